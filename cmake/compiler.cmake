@@ -1,0 +1,20 @@
+# Compiler options that every target shares.
+add_library(oitlab_options INTERFACE)
+target_compile_options(oitlab_options INTERFACE -Wall -Wextra -Wpedantic -Wno-missing-field-initializers)
+if(OITLAB_WERROR)
+  target_compile_options(oitlab_options INTERFACE -Werror)
+endif()
+if(OITLAB_SANITIZE)
+  target_compile_options(oitlab_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(oitlab_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# ccache needs to be told that precompiled headers may be trusted.
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(oitlab_options INTERFACE -fpch-preprocess)
+endif()

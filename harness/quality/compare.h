@@ -1,0 +1,27 @@
+#pragma once
+
+#include "image/image.h"
+
+namespace oitlab {
+
+/// How far an image is from a reference. All over the RGB channels of all pixels; values as given
+/// (8-bit images divided by 255; linear for EXR). When one image is sRGB-encoded and the other is
+/// linear, the encoded one is decoded first.
+struct Comparison {
+  double rmse = 0;       ///< root of the mean squared difference
+  double psnr = 0;       ///< 10 log10(1 / mse) in dB, peak 1; infinity when the images are equal
+  double maxError = 0;   ///< largest absolute difference of a channel
+  double pixelsOff = 0;  ///< share of pixels with a channel off by more than 1/255, in [0, 1]
+  std::uint64_t pixelsOffCount = 0;
+};
+
+/// Compares two images of equal size. A NaN or infinity in either counts as off, with an error of
+/// infinity. Throws InputError when the sizes differ, naming both.
+Comparison compareImages(const Image& image, const Image& reference);
+
+/// A picture of the largest absolute channel difference per pixel: a perceptually ordered colour
+/// map (dark = equal), scaled so that `scale` (> 0) is its brightest colour, with a legend bar
+/// below that shows 0 and `scale`. The result is sRGB-encoded.
+Image errorMap(const Image& image, const Image& reference, float scale);
+
+}  // namespace oitlab
