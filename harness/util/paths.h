@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+namespace oitlab {
+
+/// The folder that holds what the program reads at run time (shaders/, experiments/): the
+/// environment variable OITLAB_ROOT if set, else the source tree that the program was built from,
+/// else the folder of the executable. Throws InputError when OITLAB_ROOT is not a folder.
+std::filesystem::path dataRoot();
+
+}  // namespace oitlab
