@@ -15,12 +15,13 @@ find_package(PNG REQUIRED)
 find_package(GTest CONFIG REQUIRED)
 find_package(benchmark CONFIG REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(STB REQUIRED IMPORTED_TARGET stb)
 
 add_library(oitlab_dependencies INTERFACE)
 target_link_libraries(oitlab_dependencies INTERFACE
   Threads::Threads ${CMAKE_DL_LIBS}
   glslang::glslang glslang::SPIRV glslang::glslang-default-resource-limits
   OpenEXR::OpenEXR PNG::PNG fmt::fmt nlohmann_json::nlohmann_json
-  tomlplusplus::tomlplusplus CLI11::CLI11 PkgConfig::XXHASH)
+  tomlplusplus::tomlplusplus CLI11::CLI11 PkgConfig::XXHASH TinyGLTF::TinyGLTF PkgConfig::STB)
 target_compile_definitions(oitlab_dependencies INTERFACE
   GLM_FORCE_RADIANS GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_ENABLE_EXPERIMENTAL)

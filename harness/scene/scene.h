@@ -28,13 +28,18 @@ struct Texture {
   bool hasAlpha() const;           ///< any texel with alpha < 255
 };
 
+/// The alpha of a fragment is baseColor.a times the texture's alpha times the vertex colour's, less
+/// the factors that are to be ignored. A fragment with less alpha than the cutoff is discarded,
+/// whatever the mode; of the others, OPAQUE and MASK ones are drawn with alpha 1, BLEND ones blend.
 struct Material {
   std::string name;
-  glm::vec4 baseColor{1.0f};  ///< linear, alpha = opacity, not premultiplied
+  glm::vec4 baseColor{1.0f};  ///< linear, alpha = opacity, not premultiplied; 1 when OPAQUE
   int texture = -1;           ///< index into Scene::textures, -1 for none
   AlphaMode alphaMode = AlphaMode::opaque;
-  float alphaCutoff = 0.5f;
+  float alphaCutoff = 0.0f;  ///< 0: nothing is discarded; a BLEND material may have one too
   bool doubleSided = true;
+  bool ignoreVertexAlpha = false;   ///< OPAQUE materials, and all under an opacity override
+  bool ignoreTextureAlpha = false;  ///< OPAQUE in its origin: the texture's alpha means nothing
 };
 
 /// Something found wrong in the input that could be mended, with how often it was.
@@ -56,6 +61,9 @@ struct Scene {
   std::vector<Repair> repairs;
   Bounds bounds;  ///< of the vertices that triangles use
 
+  /// Adds to the repair of that name, or makes it. A count of 0 is no repair.
+  void repaired(const std::string& what, std::uint64_t count = 1);
+
   AlphaMode alphaModeOf(const glm::uvec3& triangle) const {
     return materials[vertices[triangle.x].material].alphaMode;
   }
@@ -65,7 +73,7 @@ struct Scene {
 /// content.
 struct SceneSpec {
   std::string source;            ///< "boxes", "../shared/scenes/sponza.glb"
-  std::optional<float> opacity;  ///< override in (0, 1]: every material blends with this opacity
+  std::optional<float> opacity;  ///< in (0, 1]: see overrideOpacity()
   float detail = 1.0f;           ///< generated scenes: (0, 1], share of the full triangle count
 };
 
@@ -82,6 +90,11 @@ std::vector<SceneInfo> sceneCatalogue();
 /// views: "default" always exists. Throws InputError (file, place, what was found and wanted; an
 /// unknown name gets a suggestion).
 Scene loadScene(const SceneSpec& spec);
+
+/// Every material becomes BLEND with `opacity` in (0, 1] as its baseColor.a, and vertex alpha is
+/// ignored; the alpha of textures counts unless the material was OPAQUE. What a MASK material cut
+/// out stays cut out: its cutoff is scaled by the change of baseColor.a.
+void overrideOpacity(Scene& scene, float opacity);
 
 /// The camera for `view`: a named view of the scene, or what parseCamera() takes. Throws InputError
 /// with the scene's view names and a suggestion.

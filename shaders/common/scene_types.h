@@ -35,7 +35,7 @@ struct GpuMaterial {
   vec4 baseColor;     // linear RGB, alpha = opacity; not premultiplied
   vec4 atlasRect;     // the texture's place in its atlas: offset.xy, extent.zw, in atlas uv
   uint alphaMode;     // ALPHA_*
-  float alphaCutoff;  // ALPHA_MASK: fragments with less alpha are discarded
+  float alphaCutoff;  // fragments with less alpha are discarded, in every mode; 0: none
   uint atlas;         // 0: no texture, 1: the opaque atlas, 2: the transparent atlas
   uint ignoreVertexAlpha;  // 1 under an opacity override: alpha = baseColor.a * texture alpha
 };
