@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "image/image.h"
 
 namespace oitlab {
@@ -9,9 +11,11 @@ namespace oitlab {
 /// linear, the encoded one is decoded first.
 struct Comparison {
   double rmse = 0;       ///< root of the mean squared difference
-  double psnr = 0;       ///< 10 log10(1 / mse) in dB, peak 1; infinity when the images are equal
+  double psnr = 0;       ///< 10 log10(1 / mse) in dB, peak 1; infinity when the images are equal,
+                         ///< minus infinity when rmse is infinite (JSON knows neither)
   double maxError = 0;   ///< largest absolute difference of a channel
-  double pixelsOff = 0;  ///< share of pixels with a channel off by more than 1/255, in [0, 1]
+  double pixelsOff = 0;  ///< share of pixels with a channel off by more than 1/255, in [0, 1];
+                         ///< one step of an 8-bit image is not more, whatever the rounding
   std::uint64_t pixelsOffCount = 0;
 };
 
@@ -21,7 +25,9 @@ Comparison compareImages(const Image& image, const Image& reference);
 
 /// A picture of the largest absolute channel difference per pixel: a perceptually ordered colour
 /// map (dark = equal), scaled so that `scale` (> 0) is its brightest colour, with a legend bar
-/// below that shows 0 and `scale`. The result is sRGB-encoded.
+/// below that shows 0 and `scale`. Pixels that are NaN or infinite in either image are pure green,
+/// which the map does not have. The result is sRGB-encoded; it is higher than the images by the
+/// legend, and at least 64 pixels wide (padded in grey). Throws InputError when the sizes differ.
 Image errorMap(const Image& image, const Image& reference, float scale);
 
 }  // namespace oitlab

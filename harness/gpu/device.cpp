@@ -1,0 +1,258 @@
+#include "gpu/device.h"
+
+#include <cstdlib>
+
+#include "gpu/device_info.h"
+#include "gpu/shader.h"
+#include "util/error.h"
+
+namespace oitlab {
+namespace {
+
+constexpr const char* validationLayer = "VK_LAYER_KHRONOS_validation";
+
+vk::raii::Context openLoader() {
+  try {
+    return vk::raii::Context();
+  } catch (const std::exception&) {
+    throw DeviceError(
+        "no Vulkan loader (libvulkan.so.1) on this machine; install the package libvulkan1 and a "
+        "driver (mesa-vulkan-drivers runs on any CPU)");
+  }
+}
+
+bool hasLayer(const vk::raii::Context& context, const char* name) {
+  for (const auto& layer : context.enumerateInstanceLayerProperties())
+    if (std::string_view(layer.layerName.data()) == name) return true;
+  return false;
+}
+
+vk::raii::Instance openInstance(const vk::raii::Context& context, bool validation) {
+  if (context.enumerateInstanceVersion() < VK_API_VERSION_1_3)
+    throw DeviceError("the Vulkan loader is older than 1.3; update the package libvulkan1");
+  if (validation && !hasLayer(context, validationLayer))
+    throw DeviceError(
+        "validation was asked for, but the layer VK_LAYER_KHRONOS_validation is not installed "
+        "(package vulkan-validationlayers)");
+
+  const vk::ApplicationInfo application("oitlab", 1, "oitlab", 1, VK_API_VERSION_1_3);
+  std::vector<const char*> layers, extensions;
+  const vk::ValidationFeatureEnableEXT enable =
+      vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+  const vk::ValidationFeaturesEXT features(enable);
+  vk::InstanceCreateInfo info({}, &application, layers, extensions);
+  if (validation) {
+    layers.push_back(validationLayer);
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    info.setPNext(&features);
+  }
+  info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
+  try {
+    return vk::raii::Instance(context, info);
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("no Vulkan instance: {}; is a driver installed (mesa-vulkan-drivers runs on "
+                      "any CPU)?",
+                      error.what());
+  }
+}
+
+std::vector<vk::raii::PhysicalDevice> physicalDevices(const vk::raii::Instance& instance) {
+  try {
+    return instance.enumeratePhysicalDevices();
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("the Vulkan driver does not answer: {}", error.what());
+  }
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+struct Device::MessageLog {
+  mutable std::mutex mutex;
+  std::vector<std::string> messages;
+
+  static VKAPI_ATTR VkBool32 VKAPI_CALL receive(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                VkDebugUtilsMessageTypeFlagsEXT,
+                                                const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                void* user) {
+    auto* log = static_cast<MessageLog*>(user);
+    std::lock_guard lock(log->mutex);
+    log->messages.emplace_back(data->pMessage);
+    fmt::print(stderr, "validation: {}\n", data->pMessage);
+    return VK_FALSE;
+  }
+};
+
+std::vector<DeviceInfo> Device::listDevices() {
+  const vk::raii::Context context = openLoader();
+  const vk::raii::Instance instance = openInstance(context, false);
+  std::vector<DeviceInfo> devices;
+  for (const auto& physical : physicalDevices(instance)) devices.push_back(describeDevice(physical));
+  return devices;
+}
+
+std::vector<std::string> Device::missingBaseline(const DeviceInfo& info) {
+  std::vector<std::string> missing;
+  if (info.features.empty()) return {fmt::format("Vulkan 1.3 (it has {})", info.apiVersion)};
+  FeatureChain chain;
+  for (const NamedFeature& feature : namedFeatures(chain))
+    if (feature.baseline && !info.has(feature.name)) missing.push_back(feature.name);
+  if (info.timestampValidBits == 0) missing.push_back("timestamp queries on the graphics queue");
+  return missing;
+}
+
+int Device::bestDevice(const std::vector<DeviceInfo>& devices) {
+  const std::vector<std::string> order = {"discrete", "integrated", "virtual", "other", "cpu"};
+  for (const std::string& type : order)
+    for (std::size_t i = 0; i < devices.size(); ++i)
+      if (devices[i].type == type && missingBaseline(devices[i]).empty()) return int(i);
+  return -1;
+}
+
+Device::Device(const Options& options)
+    : validation_(options.validation),
+      log_(std::make_unique<MessageLog>()),
+      context_(openLoader()),
+      instance_(openInstance(context_, options.validation)) {
+  if (validation_) {
+    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+    vk::DebugUtilsMessengerCreateInfoEXT info;
+    info.messageSeverity = Severity::eWarning | Severity::eError;
+    info.messageType = Type::eGeneral | Type::eValidation | Type::ePerformance;
+    info.pfnUserCallback =
+        reinterpret_cast<decltype(info.pfnUserCallback)>(&MessageLog::receive);
+    info.pUserData = log_.get();
+    messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, info);
+  }
+
+  auto physicals = physicalDevices(instance_);
+  std::vector<DeviceInfo> devices;
+  for (const auto& physical : physicals) devices.push_back(describeDevice(physical));
+  if (devices.empty())
+    throw DeviceError(
+        "no Vulkan device on this machine; install a driver (the package mesa-vulkan-drivers runs "
+        "on any CPU)");
+  int index = options.index;
+  if (index >= int(devices.size()))
+    fail<DeviceError>("there is no device {}: `oitlab info` lists 0 to {}", index,
+                      devices.size() - 1);
+  if (index < 0) index = bestDevice(devices);
+  if (index < 0) {
+    std::vector<std::string> reasons;
+    for (const auto& device : devices)
+      reasons.push_back(fmt::format("{} lacks {}", device.name, joined(missingBaseline(device))));
+    fail<DeviceError>("no usable Vulkan device: {}", fmt::join(reasons, "; "));
+  }
+  info_ = devices[std::size_t(index)];
+  if (const auto missing = missingBaseline(info_); !missing.empty())
+    fail<DeviceError>("device {} ({}) lacks {}", index, info_.name, joined(missing));
+  physical_ = std::move(physicals[std::size_t(index)]);
+  memory_ = physical_.getMemoryProperties();
+
+  const auto families = physical_.getQueueFamilyProperties();
+  queueFamily_ = std::uint32_t(families.size());
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
+    const auto both = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+    if ((families[i].queueFlags & both) == both) {
+      queueFamily_ = i;
+      break;
+    }
+  }
+  if (queueFamily_ == families.size())
+    fail<DeviceError>("{} has no queue for both graphics and compute", info_.name);
+
+  FeatureChain available = queryFeatures(physical_);
+  FeatureChain enabled;
+  const auto from = namedFeatures(available);
+  const auto to = namedFeatures(enabled);
+  for (std::size_t i = 0; i < from.size(); ++i) *to[i].value = *from[i].value;
+
+  const float priority = 1.0f;
+  const vk::DeviceQueueCreateInfo queueInfo({}, queueFamily_, 1, &priority);
+  vk::DeviceCreateInfo deviceInfo({}, queueInfo);
+  deviceInfo.setPNext(&enabled.get<vk::PhysicalDeviceFeatures2>());
+  try {
+    device_ = vk::raii::Device(physical_, deviceInfo);
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("{} cannot be opened: {}", info_.name, error.what());
+  }
+  queue_ = vk::raii::Queue(device_, queueFamily_, 0);
+  commandPool_ = vk::raii::CommandPool(
+      device_, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queueFamily_});
+
+  using Type = vk::DescriptorType;
+  const auto all = vk::ShaderStageFlagBits::eAll;
+  const std::array bindings = {
+      vk::DescriptorSetLayoutBinding(0, Type::eCombinedImageSampler, 1, all),  // opaque atlas
+      vk::DescriptorSetLayoutBinding(1, Type::eCombinedImageSampler, 1, all),  // transparent atlas
+      vk::DescriptorSetLayoutBinding(2, Type::eStorageImage, 1, all),          // colour target
+      vk::DescriptorSetLayoutBinding(3, Type::eCombinedImageSampler, 1, all),  // opaque depth
+  };
+  setLayout_ = vk::raii::DescriptorSetLayout(device_, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+  const vk::PushConstantRange push(all, 0, pushConstantBytes);
+  pipelineLayout_ =
+      vk::raii::PipelineLayout(device_, vk::PipelineLayoutCreateInfo({}, *setLayout_, push));
+  pipelineCache_ = vk::raii::PipelineCache(device_, vk::PipelineCacheCreateInfo());
+  shaders_ = std::make_unique<ShaderLibrary>();
+}
+
+Device::~Device() {
+  // Whatever is still running uses resources that are about to go. Waiting on a lost device throws,
+  // and then there is nothing left to wait for.
+  try {
+    if (*device_) device_.waitIdle();
+  } catch (const vk::SystemError&) {
+  }
+}
+
+std::vector<std::string> Device::validationMessages() const {
+  std::lock_guard lock(log_->mutex);
+  return log_->messages;
+}
+
+std::uint32_t Device::memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,
+                                 vk::MemoryPropertyFlags preferred) const {
+  for (const vk::MemoryPropertyFlags flags : {wanted | preferred, wanted})
+    for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+      if ((typeBits >> i & 1u) && (memory_.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  fail<DeviceError>("{} has no memory of the kind {}", info_.name, to_string(wanted));
+}
+
+Commands Device::makeCommandBuffer() const {
+  const vk::CommandBufferAllocateInfo info(*commandPool_, vk::CommandBufferLevel::ePrimary, 1);
+  return std::move(vk::raii::CommandBuffers(device_, info).front());
+}
+
+void Device::submit(const Commands& commands, vk::Fence fence) const {
+  vk::SubmitInfo info;
+  info.setCommandBuffers(*commands);
+  queue_.submit(info, fence);
+}
+
+void Device::wait(vk::Fence fence, double seconds) const {
+  try {
+    const auto result =
+        device_.waitForFences(fence, VK_TRUE, static_cast<std::uint64_t>(seconds * 1e9));
+    if (result == vk::Result::eTimeout)
+      fail<DeviceError>("{} did not finish a frame within {} s", info_.name, seconds);
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("{} failed while working: {}", info_.name, error.what());
+  }
+}
+
+void Device::runOnce(const std::function<void(const Commands&)>& record) const {
+  const Commands commands = makeCommandBuffer();
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  record(commands);
+  commands.end();
+  const vk::raii::Fence fence(device_, vk::FenceCreateInfo());
+  submit(commands, *fence);
+  wait(*fence);
+}
+
+}  // namespace oitlab

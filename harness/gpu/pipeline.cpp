@@ -1,0 +1,101 @@
+#include "gpu/pipeline.h"
+
+#include "util/error.h"
+
+namespace oitlab {
+namespace {
+
+vk::raii::ShaderModule makeModule(const Device& device, const std::string& path,
+                                  const Defines& defines) {
+  const auto words = device.shaders().compile(path, defines);
+  return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
+}
+
+vk::PipelineColorBlendAttachmentState blendState(vk::BlendFactor source, vk::BlendFactor destination) {
+  using Component = vk::ColorComponentFlagBits;
+  const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
+  return {VK_TRUE,
+          source,
+          destination,
+          vk::BlendOp::eAdd,
+          vk::BlendFactor::eOne,
+          vk::BlendFactor::eOneMinusSrcAlpha,
+          vk::BlendOp::eAdd,
+          all};
+}
+
+}  // namespace
+
+vk::PipelineColorBlendAttachmentState premultipliedOver() {
+  return blendState(vk::BlendFactor::eOne, vk::BlendFactor::eOneMinusSrcAlpha);
+}
+
+vk::PipelineColorBlendAttachmentState straightOver() {
+  return blendState(vk::BlendFactor::eSrcAlpha, vk::BlendFactor::eOneMinusSrcAlpha);
+}
+
+Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
+                           const Constants& constants, std::uint32_t subgroupSize) {
+  const auto module = makeModule(device, path, defines);
+  std::vector<vk::SpecializationMapEntry> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i) entries.emplace_back(i, i * 4, 4);
+  vk::SpecializationInfo specialization;
+  specialization.setMapEntries(entries);
+  specialization.setData<std::uint32_t>(constants);
+  vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo required(subgroupSize);
+  vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                          &specialization);
+  if (subgroupSize != 0 && device.info().has("subgroupSizeControl")) stage.setPNext(&required);
+  Pipeline pipeline;
+  pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
+  pipeline.layout_ = device.pipelineLayout();
+  pipeline.pipeline_ =
+      vk::raii::Pipeline(device.vk(), nullptr,
+                         vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+  return pipeline;
+}
+
+Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
+  const auto vertex = makeModule(device, description.vertexShader, description.defines);
+  const auto fragment = makeModule(device, description.fragmentShader, description.defines);
+  const std::array stages = {
+      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
+      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main")};
+  const vk::PipelineVertexInputStateCreateInfo vertexInput;  // vertices are read by address
+  const vk::PipelineInputAssemblyStateCreateInfo assembly({}, vk::PrimitiveTopology::eTriangleList);
+  const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
+  vk::PipelineRasterizationStateCreateInfo raster;
+  raster.lineWidth = 1.0f;
+  const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
+  const bool depth = description.depthFormat != vk::Format::eUndefined;
+  const vk::PipelineDepthStencilStateCreateInfo depthStencil({}, depth, description.depthWrite,
+                                                             description.depthCompare);
+  auto blends = description.blends;
+  using Component = vk::ColorComponentFlagBits;
+  while (blends.size() < description.colorFormats.size())
+    blends.emplace_back().colorWriteMask =
+        Component::eR | Component::eG | Component::eB | Component::eA;
+  vk::PipelineColorBlendStateCreateInfo blend;
+  blend.setAttachments(blends);
+  const std::array dynamics = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  const vk::PipelineDynamicStateCreateInfo dynamic({}, dynamics);
+  vk::PipelineRenderingCreateInfo rendering;
+  rendering.setColorAttachmentFormats(description.colorFormats);
+  rendering.setDepthAttachmentFormat(description.depthFormat);
+  vk::GraphicsPipelineCreateInfo info({}, stages, &vertexInput, &assembly, nullptr, &viewport,
+                                      &raster, &multisample, &depthStencil, &blend, &dynamic,
+                                      device.pipelineLayout());
+  info.setPNext(&rendering);
+  Pipeline pipeline;
+  pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
+  pipeline.layout_ = device.pipelineLayout();
+  pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+  return pipeline;
+}
+
+void Pipeline::bind(const Commands& commands, vk::DescriptorSet set) const {
+  commands.bindPipeline(bindPoint_, *pipeline_);
+  commands.bindDescriptorSets(bindPoint_, layout_, 0, set, nullptr);
+}
+
+}  // namespace oitlab

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "gpu/shader.h"
+
+namespace oitlab {
+
+/// Specialization constants: values of constant_id 0, 1, 2, ...
+using Constants = std::vector<std::uint32_t>;
+
+/// A pipeline of either kind. Bind, push, then draw or dispatch.
+class Pipeline {
+ public:
+  Pipeline() = default;
+
+  /// A compute pipeline from shaders/`path`. `subgroupSize` (0 = the device's choice) is required
+  /// through subgroupSizeControl where the device has it.
+  static Pipeline compute(const Device& device, const std::string& path, const Defines& defines = {},
+                          const Constants& constants = {}, std::uint32_t subgroupSize = 0);
+
+  struct Graphics {
+    std::string vertexShader = "common/scene.vert";
+    std::string fragmentShader;
+    Defines defines;  ///< for both shaders
+    std::vector<vk::Format> colorFormats;
+    vk::Format depthFormat = vk::Format::eUndefined;
+    bool depthWrite = false;
+    /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
+    vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
+    std::vector<vk::PipelineColorBlendAttachmentState> blends;  ///< one per colour format; default: no blending
+  };
+  static Pipeline graphics(const Device& device, const Graphics& description);
+
+  void bind(const Commands& commands, vk::DescriptorSet set) const;
+
+  /// Pushes a struct of at most Device::pushConstantBytes for the bound pipeline.
+  template <typename T>
+  void push(const Commands& commands, const T& values) const {
+    static_assert(sizeof(T) <= Device::pushConstantBytes);
+    commands.pushConstants<T>(layout_, vk::ShaderStageFlagBits::eAll, 0, values);
+  }
+
+ private:
+  vk::PipelineBindPoint bindPoint_ = vk::PipelineBindPoint::eCompute;
+  vk::PipelineLayout layout_;
+  vk::raii::Pipeline pipeline_ = nullptr;
+};
+
+/// Front-to-back result over what is there: source + destination * (1 - source alpha).
+vk::PipelineColorBlendAttachmentState premultipliedOver();
+
+/// Back-to-front `over` of colours that are not premultiplied.
+vk::PipelineColorBlendAttachmentState straightOver();
+
+}  // namespace oitlab

@@ -1,0 +1,177 @@
+#include "gpu/shader.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <sstream>
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include "image/hash.h"
+#include "util/error.h"
+#include "util/paths.h"
+#include "util/text_file.h"
+
+namespace oitlab {
+namespace {
+
+// What every shader may use, so that none repeats it. Each is core in Vulkan 1.3, or a feature of the
+// baseline, or (subgroups, 64-bit atomics) used only by variants whose method checked for it.
+constexpr const char* preamble = R"(
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : enable
+#extension GL_KHR_shader_subgroup_vote : enable
+#extension GL_KHR_shader_subgroup_ballot : enable
+#extension GL_KHR_shader_subgroup_arithmetic : enable
+#extension GL_KHR_shader_subgroup_shuffle : enable
+)";
+
+/// Resolves #include "x" against the folder of the including file, then against shaders/.
+class Includer : public glslang::TShader::Includer {
+ public:
+  explicit Includer(std::filesystem::path root) : root_(std::move(root)) {}
+
+  IncludeResult* includeLocal(const char* name, const char* includer, std::size_t) override {
+    for (const auto& folder : {(root_ / includer).parent_path(), root_}) {
+      const auto path = folder / name;
+      if (!std::filesystem::exists(path)) continue;
+      auto* text = new std::string(readTextFile(path));
+      return new IncludeResult(std::filesystem::relative(path, root_).generic_string(), text->data(),
+                               text->size(), text);
+    }
+    return nullptr;
+  }
+  IncludeResult* includeSystem(const char* name, const char* includer, std::size_t depth) override {
+    return includeLocal(name, includer, depth);
+  }
+  void releaseInclude(IncludeResult* result) override {
+    if (result == nullptr) return;
+    delete static_cast<std::string*>(result->userData);
+    delete result;
+  }
+
+ private:
+  std::filesystem::path root_;
+};
+
+EShLanguage stageOf(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".vert") return EShLangVertex;
+  if (extension == ".frag") return EShLangFragment;
+  if (extension == ".comp") return EShLangCompute;
+  fail<InputError>("{}: the extension must be .vert, .frag or .comp", path);
+}
+
+/// The text of `path` and of everything it includes, in order of first appearance.
+void collect(const std::filesystem::path& root, const std::filesystem::path& path,
+             std::set<std::string>& seen, std::string& text) {
+  if (!seen.insert(std::filesystem::weakly_canonical(path).string()).second) return;
+  const std::string content = readTextFile(path);
+  text += content;
+  std::istringstream lines(content);
+  for (std::string line; std::getline(lines, line);) {
+    const auto open = line.find('"');
+    if (line.rfind("#include", 0) != 0 || open == std::string::npos) continue;
+    const std::string name = line.substr(open + 1, line.find('"', open + 1) - open - 1);
+    for (const auto& folder : {path.parent_path(), root})
+      if (std::filesystem::exists(folder / name)) {
+        collect(root, folder / name, seen, text);
+        break;
+      }
+  }
+}
+
+std::vector<std::uint32_t> readWords(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return {};
+  std::vector<std::uint32_t> words(std::size_t(file.tellg()) / 4);
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(words.data()), std::streamsize(words.size() * 4));
+  constexpr std::uint32_t spirvMagic = 0x07230203;
+  if (!file || words.size() < 5 || words[0] != spirvMagic) return {};
+  return words;
+}
+
+/// Several processes may share the cache, so a file appears whole or not at all. The cache is a
+/// convenience: failing to write it is not an error.
+void writeWords(const std::filesystem::path& path, const std::vector<std::uint32_t>& words) {
+  std::error_code ignored;
+  std::filesystem::create_directories(path.parent_path(), ignored);
+  const auto temporary = path.string() + fmt::format(".{}.tmp", getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * 4));
+    if (!file) return;
+  }
+  std::filesystem::rename(temporary, path, ignored);
+}
+
+}  // namespace
+
+ShaderLibrary::ShaderLibrary()
+    : root_(std::filesystem::weakly_canonical(dataRoot() / "shaders")),
+      cache_(cacheRoot() / "spirv") {
+  if (!std::filesystem::exists(root_))
+    fail<InputError>("{}: no such folder; set OITLAB_ROOT to the folder that holds shaders/",
+                     root_.string());
+}
+
+std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const Defines& defines) {
+  std::string definitions;
+  for (const auto& [name, value] : defines)
+    definitions += fmt::format("#define {} {}\n", name, value);
+  std::string everything = path + "\n" + preamble + definitions;
+  const auto version = glslang::GetVersion();
+  everything += fmt::format("glslang {}.{}.{}\n", version.major, version.minor, version.patch);
+  std::set<std::string> seen;
+  collect(root_, root_ / path, seen, everything);
+  const std::string hash = imageHash(std::as_bytes(std::span(everything)));
+  std::string label = path;
+  for (const auto& [name, value] : defines) label += fmt::format(" {}={}", name, value);
+  hashes_[label] = hash;
+
+  const auto cached = cache_ / (hash + ".spv");
+  if (auto words = readWords(cached); !words.empty()) return words;
+
+  static std::once_flag once;
+  std::call_once(once, [] { glslang::InitializeProcess(); });
+  const EShLanguage stage = stageOf(path);
+  const std::string text = readTextFile(root_ / path);
+  const std::string head = preamble + definitions;
+  glslang::TShader shader(stage);
+  const char* source = text.c_str();
+  const char* name = path.c_str();
+  shader.setStringsWithLengthsAndNames(&source, nullptr, &name, 1);
+  shader.setPreamble(head.c_str());
+  shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+  Includer includer(root_);
+  const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules);
+  glslang::TProgram program;
+  bool good = shader.parse(GetDefaultResources(), 460, false, messages, includer);
+  std::string log = shader.getInfoLog();
+  if (good) {
+    program.addShader(&shader);
+    good = program.link(messages);
+    log += program.getInfoLog();
+  }
+  if (!good) fail<InputError>("shaders/{} does not compile:\n{}", label, log);
+  std::vector<std::uint32_t> words;
+  glslang::GlslangToSpv(*program.getIntermediate(stage), words);
+  writeWords(cached, words);
+  return words;
+}
+
+}  // namespace oitlab

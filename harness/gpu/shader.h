@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace oitlab {
+
+/// Preprocessor definitions of a shader variant: name -> value.
+using Defines = std::map<std::string, std::string>;
+
+/// Compiles GLSL to SPIR-V when a pipeline is made, so that editing a shader needs no rebuild. The
+/// result is cached on disk by the hash of everything that goes into it: the text, what it includes,
+/// the definitions and the compiler's version.
+class ShaderLibrary {
+ public:
+  ShaderLibrary();
+
+  /// `path` is relative to the folder shaders/, its extension names the stage (.vert .frag .comp).
+  /// Throws InputError with file, line and the compiler's message when the text does not compile.
+  std::vector<std::uint32_t> compile(const std::string& path, const Defines& defines = {});
+
+  /// Content hashes of the variants compiled so far, by path and definitions: provenance.
+  const std::map<std::string, std::string>& hashes() const { return hashes_; }
+
+ private:
+  std::filesystem::path root_;
+  std::filesystem::path cache_;
+  std::map<std::string, std::string> hashes_;
+};
+
+}  // namespace oitlab

@@ -1,0 +1,62 @@
+#include "image/image.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "image/codec.h"
+#include "util/check.h"
+#include "util/error.h"
+#include "util/text_file.h"
+
+namespace oitlab {
+namespace {
+
+constexpr std::int64_t kMaxSide = 32768;
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 27;
+
+enum class Format { png, exr };
+
+Format formatOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".png") return Format::png;
+  if (extension == ".exr") return Format::exr;
+  fail<InputError>("{}: unknown image extension '{}', wanted .png or .exr", path.string(),
+                   path.extension().string());
+}
+
+}  // namespace
+
+void checkImageSize(std::int64_t width, std::int64_t height, const std::string& name) {
+  const bool sidesFit = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
+  if (sidesFit && width * height <= kMaxPixels) return;
+  fail<InputError>("{}: image of {} x {} pixels, wanted 1 to {} on a side and at most {} in all",
+                   name, width, height, kMaxSide, kMaxPixels);
+}
+
+Image readImage(const std::filesystem::path& path) {
+  // The extension first: a wrong one should not cost the reading of a large file.
+  const Format format = formatOf(path);
+  const std::string bytes = readTextFile(path);
+  return format == Format::png ? decodePng(bytes, path.string()) : decodeExr(bytes, path.string());
+}
+
+void writeImage(const std::filesystem::path& path, const Image& image) {
+  const Format format = formatOf(path);
+  checkImageSize(image.width, image.height, path.string());
+  OITLAB_CHECK_OP(image.rgba.size(), ==, std::size_t(image.width) * image.height * 4);
+  writeFileAtomically(path, format == Format::png ? encodePng(image, path.string())
+                                                  : encodeExr(image, path.string()));
+}
+
+// IEC 61966-2-1.
+float srgbEncode(float linear) {
+  return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+}
+
+float srgbDecode(float encoded) {
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+}  // namespace oitlab

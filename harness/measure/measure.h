@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+
+#include "measure/statistics.h"
+#include "render/renderer.h"
+
+namespace oitlab {
+
+struct MeasureSettings {
+  StopRule::Limits stop;
+  std::uint64_t seed = 1;  ///< of the order of the cells in each block
+  int stageFrames = 10;    ///< frames of the separate run that times the stages
+
+  /// A block lasts about this long on the GPU, within minFrames and maxFrames. Long enough that the
+  /// clock's resolution does not matter, short enough that slow drift hits all cells alike.
+  double blockSeconds = 0.05;
+  int minFrames = 3;
+  int maxFrames = 50;
+};
+
+/// GPU times in milliseconds with the block that each belongs to.
+struct Series {
+  std::vector<double> ms;
+  std::vector<std::uint32_t> block;
+  void add(double value, std::uint32_t inBlock) {
+    ms.push_back(value);
+    block.push_back(inBlock);
+  }
+};
+
+/// Everything that was measured of one configuration.
+struct Measurement {
+  Series frame;                          ///< uninstrumented frames: the headline
+  std::map<std::string, Series> stages;  ///< from a separate, instrumented run
+  std::vector<std::string> stageOrder;   ///< stage names as recorded
+  std::map<std::string, std::uint64_t> counters;
+  std::vector<std::byte> image;  ///< the last timed frame, as the target stores it
+  std::string stopReason;
+  double relativeSpread = 0;
+  double seconds = 0;             ///< wall-clock time spent on this cell
+  std::uint32_t blocks = 0;
+  std::uint64_t rejectedSamples = 0;  ///< unusable timestamps, or frames recorded more than once
+  std::string failure;  ///< not empty: it failed on the way, for this reason
+};
+
+/// Measures methods against each other in shuffled blocks: in each block every method that still
+/// wants samples has its turn, in random order, each with its own warm-up, so that a clock that
+/// drifts does so for all. `done(i)` is called once for each method as soon as it is finished.
+/// A method that fails leaves a Measurement with `failure`; the others go on.
+void measureInterleaved(Renderer& renderer, const Camera& camera,
+                        const std::vector<Method*>& methods, const MeasureSettings& settings,
+                        const std::function<void(std::size_t, Measurement)>& done);
+
+}  // namespace oitlab

@@ -1,0 +1,41 @@
+#include "method/method.h"
+
+#include "util/check.h"
+#include "util/error.h"
+#include "util/suggest.h"
+
+namespace oitlab {
+namespace {
+
+/// A function's static, so that it exists before the first registration, whatever the link order.
+std::map<std::string, MethodInfo>& registry() {
+  static std::map<std::string, MethodInfo> methods;
+  return methods;
+}
+
+}  // namespace
+
+std::vector<std::string> MethodInfo::missing(const DeviceInfo& device) const {
+  std::vector<std::string> missing = Device::missingBaseline(device);
+  for (const std::string& feature : features)
+    if (!device.has(feature)) missing.push_back(feature);
+  return missing;
+}
+
+const std::map<std::string, MethodInfo>& methods() { return registry(); }
+
+const MethodInfo& findMethod(const std::string& name) {
+  const auto it = registry().find(name);
+  if (it != registry().end()) return it->second;
+  std::vector<std::string> names;
+  for (const auto& [known, info] : registry()) names.push_back(known);
+  fail<InputError>("unknown method '{}'{}; there are: {}", name, didYouMean(name, names),
+                   joinNames(names));
+}
+
+RegisterMethod::RegisterMethod(MethodInfo info) {
+  const bool isNew = registry().emplace(info.name, info).second;
+  OITLAB_CHECK(isNew);
+}
+
+}  // namespace oitlab

@@ -1,0 +1,36 @@
+#include "quality/compare.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quality/difference.h"
+
+namespace oitlab {
+namespace {
+
+/// One step of an 8-bit image. The floats of two neighbouring steps lie up to 6e-8 further apart,
+/// so that without the margin "more than one step" would depend on which steps they are.
+constexpr double kStep = 1.0 / 255.0 + 1e-6;
+
+}  // namespace
+
+Comparison compareImages(const Image& image, const Image& reference) {
+  const Difference difference(image, reference);
+  const std::size_t pixels = difference.pixelCount();
+  Comparison result;
+  double squares = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const auto channels = difference.at(i);
+    for (const double error : channels) squares += error * error;
+    const double largest = *std::max_element(channels.begin(), channels.end());
+    result.maxError = std::max(result.maxError, largest);
+    if (largest > kStep) ++result.pixelsOffCount;
+  }
+  const double mse = pixels == 0 ? 0 : squares / double(3 * pixels);
+  result.rmse = std::sqrt(mse);
+  result.psnr = -10.0 * std::log10(mse);
+  result.pixelsOff = pixels == 0 ? 0 : double(result.pixelsOffCount) / double(pixels);
+  return result;
+}
+
+}  // namespace oitlab

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/gpu_scene.h"
+#include "render/target.h"
+
+namespace oitlab {
+
+/// GPU timestamps of one frame: both ends of the frame, and of each stage when they are wanted.
+/// One frame is in flight at a time.
+class FrameTimer {
+ public:
+  static constexpr std::uint32_t maxStages = 32;
+
+  explicit FrameTimer(const Device& device);
+
+  struct Reading {
+    std::optional<double> frameMs;  ///< empty when the delta was zero or negative: a rejected sample
+    std::vector<std::pair<std::string, double>> stageMs;  ///< in recording order; equal names summed
+  };
+
+  void begin(const Commands& commands, bool stages);
+  void end(const Commands& commands);
+  void beginStage(const Commands& commands, const std::string& name);
+  void endStage(const Commands& commands);
+
+  /// Once the device is done with the frame.
+  Reading read();
+
+  /// Ticks between two raw timestamps of which only `validBits` count, or nothing when zero, or when
+  /// the difference is more than half the counter's range: then time went backwards.
+  static std::optional<std::uint64_t> ticksBetween(std::uint64_t begin, std::uint64_t end,
+                                                   std::uint32_t validBits);
+
+ private:
+  void stamp(const Commands& commands);
+
+  const Device& device_;
+  vk::raii::QueryPool pool_;
+  std::uint32_t next_ = 0;
+  bool stages_ = false;
+  std::vector<std::string> names_;
+};
+
+/// What a method records into: one frame, after the opaque pass.
+struct Frame {
+  const Device& device;
+  const Commands& commands;
+  const GpuScene& scene;
+  const Target& target;
+  const Camera& camera;
+  vk::DescriptorSet bindings;     ///< set 0 of every pipeline
+  std::uint64_t constants;        ///< address of the FrameConstants
+  bool instrumented;              ///< a labelled run: stages are timed, counters may cost time
+  FrameTimer& timer;
+
+  /// Brackets a stage: a row in the results. Outside instrumented frames nothing is recorded, since
+  /// the barriers that part stages change what they time.
+  template <typename Record>
+  void stage(const std::string& name, Record&& record) const {
+    if (instrumented) timer.beginStage(commands, name);
+    record();
+    if (instrumented) timer.endStage(commands);
+  }
+
+  /// Makes all writes before it visible to everything after it within `from` -> `to`.
+  void barrier(vk::PipelineStageFlags2 from, vk::PipelineStageFlags2 to) const;
+
+  /// A render pass on the target's colour (loaded), tested against the opaque depth (read-only).
+  template <typename Draw>
+  void renderOnTarget(Draw&& draw) const {
+    beginRendering(true);
+    draw();
+    commands.endRendering();
+  }
+
+  /// A render pass without colour, tested against the opaque depth: for captures.
+  template <typename Draw>
+  void renderDepthTested(Draw&& draw) const {
+    beginRendering(false);
+    draw();
+    commands.endRendering();
+  }
+
+  /// Draws all transparent triangles in submission order with the bound pipeline.
+  void drawTransparent() const;
+
+  /// Dispatches a compute shader with one invocation a pixel, in groups of 8x8.
+  void dispatchPixels() const;
+
+ private:
+  void beginRendering(bool color) const;
+};
+
+}  // namespace oitlab

@@ -1,0 +1,163 @@
+#include "render/renderer.h"
+
+#include "common/frame_types.h"
+#include "util/error.h"
+
+namespace oitlab {
+namespace {
+
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+using Layout = vk::ImageLayout;
+
+/// A method that grows by what it counted is done after two recordings. More are allowed for
+/// counters that only show part of the need, but not without end.
+constexpr int maxRecordings = 8;
+
+double millisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Renderer::Renderer(const Device& device, const GpuScene& scene, const Target& target)
+    : device_(device),
+      scene_(scene),
+      target_(target),
+      bindings_(device, scene, target),
+      timer_(device),
+      opaque_(Pipeline::graphics(device, {.fragmentShader = "common/opaque.frag",
+                                          .colorFormats = {vulkanFormat(target.format())},
+                                          .depthFormat = Target::depthFormat,
+                                          .depthWrite = true})),
+      constants_(device, memory_, "frame constants", sizeof(FrameConstants), BufferKind::upload),
+      commands_(device.makeCommandBuffer()),
+      fence_(device.vk(), vk::FenceCreateInfo()) {}
+
+std::unique_ptr<Method> Renderer::prepare(const MethodInfo& info,
+                                          const Parameters& parameters) const {
+  if (const auto missing = info.missing(device_.info()); !missing.empty())
+    fail<DeviceError>("method {} cannot run on {}: it lacks {}", info.name, device_.info().name,
+                      fmt::join(missing, ", "));
+  auto method = info.make();
+  try {
+    method->prepare(device_, scene_, target_, parameters);
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("method {} could not be prepared on {}: {}", info.name, device_.info().name,
+                      error.what());
+  }
+  return method;
+}
+
+FrameResult Renderer::render(Method& method, const Camera& camera, bool instrumented) {
+  for (int recording = 1; recording <= maxRecordings; ++recording) {
+    Status status;
+    FrameResult result = renderOnce(method, camera, instrumented, status);
+    if (status.recordAgain) continue;
+    result.recordings = recording;
+    result.counters = std::move(status.counters);
+    return result;
+  }
+  fail<DeviceError>("the method asked for a new recording {} times in a row", maxRecordings);
+}
+
+FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool instrumented,
+                                 Status& status) {
+  const auto start = std::chrono::steady_clock::now();
+  const float aspect = float(target_.width()) / float(target_.height());
+  FrameConstants constants{};
+  constants.viewProjection = camera.projectionMatrix(aspect) * camera.viewMatrix();
+  constants.eye = glm::vec4(camera.eye, 1.0f);
+  constants.background = backgroundColor;
+  constants.size = {target_.width(), target_.height()};
+  constants.transparentCount = scene_.transparentCount();
+  constants.vertices = scene_.vertices().address();
+  constants.materials = scene_.materials().address();
+  constants.transparentIndices = scene_.transparentIndices().address();
+  constants.transparentIds = scene_.transparentIds().address();
+  constants_.mapped<FrameConstants>()[0] = constants;
+
+  FrameResult result;
+  try {
+    commands_.reset();
+    commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    const Frame frame{device_, commands_,       scene_,       target_, camera, bindings_.set(),
+                      constants_.address(), instrumented, timer_};
+    timer_.begin(commands_, instrumented);
+    frame.stage("opaque", [&] { recordOpaque(frame); });
+    method.record(frame);
+    timer_.end(commands_);
+    commands_.end();
+    device_.vk().resetFences(*fence_);
+    device_.submit(commands_, *fence_);
+    result.cpuMs = millisecondsSince(start);
+    device_.wait(*fence_);
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("{} failed while working: {}", device_.info().name, error.what());
+  }
+  FrameTimer::Reading reading = timer_.read();
+  result.frameMs = reading.frameMs;
+  result.stageMs = std::move(reading.stageMs);
+  status = method.status();
+  return result;
+}
+
+void Renderer::recordOpaque(const Frame& frame) const {
+  const Commands& commands = frame.commands;
+  // Contents of the last frame are of no interest, but its accesses must be over.
+  target_.color().transition(commands, Layout::eUndefined, Layout::eGeneral, Stage::eAllCommands,
+                             Access::eMemoryWrite, Stage::eColorAttachmentOutput,
+                             Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+  const auto depthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+  target_.depth().transition(
+      commands, Layout::eUndefined, Layout::eDepthAttachmentOptimal, Stage::eAllCommands,
+      Access::eMemoryWrite, depthStages,
+      Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
+
+  const auto store = vk::AttachmentStoreOp::eStore;
+  const auto clear = vk::AttachmentLoadOp::eClear;
+  vk::RenderingAttachmentInfo color(target_.color().view(), Layout::eGeneral);
+  color.loadOp = clear;
+  color.storeOp = store;
+  color.clearValue.color = vk::ClearColorValue(backgroundColor.r, backgroundColor.g,
+                                               backgroundColor.b, backgroundColor.a);
+  vk::RenderingAttachmentInfo depth(target_.depth().view(), Layout::eDepthAttachmentOptimal);
+  depth.loadOp = clear;
+  depth.storeOp = store;
+  depth.clearValue.depthStencil = vk::ClearDepthStencilValue(0.0f, 0);  // reversed: infinitely far
+  vk::RenderingInfo info({}, target_.area(), 1);
+  info.setColorAttachments(color).setPDepthAttachment(&depth);
+  commands.beginRendering(info);
+  if (scene_.opaqueCount() > 0) {
+    commands.setViewport(0,
+                         vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
+    commands.setScissor(0, target_.area());
+    opaque_.bind(commands, frame.bindings);
+    opaque_.push(commands, frame.constants);
+    commands.bindIndexBuffer(scene_.opaqueIndices().vk(), 0, vk::IndexType::eUint32);
+    commands.drawIndexed(scene_.opaqueCount() * 3, 1, 0, 0, 0);
+  }
+  commands.endRendering();
+
+  target_.color().transition(commands, Layout::eGeneral, Layout::eGeneral,
+                             Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
+                             Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
+  target_.depth().transition(commands, Layout::eDepthAttachmentOptimal,
+                             Layout::eDepthStencilReadOnlyOptimal, depthStages,
+                             Access::eDepthStencilAttachmentWrite, Stage::eAllCommands,
+                             Access::eMemoryRead);
+}
+
+std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {
+  std::map<std::string, std::uint64_t> buffers;
+  auto add = [&](const std::string& prefix, const MemoryLedger& ledger) {
+    for (const auto& [name, bytes] : ledger.byName()) buffers[prefix + name] += bytes;
+  };
+  add("method: ", method.memory());
+  add("scene: ", scene_.memory());
+  add("harness: ", target_.memory());
+  add("harness: ", memory_);
+  return buffers;
+}
+
+}  // namespace oitlab

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gpu/gpu_image.h"
+#include "image/image.h"
+
+namespace oitlab {
+
+class GpuScene;
+
+/// Pixel formats of the colour target: linear values in each.
+enum class TargetFormat { rgba16f, rgba8, rgba32f };
+
+/// "rgba16f" and so on. parse throws InputError with the names there are.
+std::string formatName(TargetFormat format);
+TargetFormat parseFormat(const std::string& name);
+vk::Format vulkanFormat(TargetFormat format);
+
+/// The images that a frame is made in: the colour (always in layout GENERAL, read and written by
+/// attachments and storage alike) and the opaque depth (reversed, D32).
+class Target {
+ public:
+  /// Throws InputError when a side is 0 or beyond the device, DeviceError when memory is short.
+  Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format);
+
+  std::uint32_t width() const { return color_.description().width; }
+  std::uint32_t height() const { return color_.description().height; }
+  vk::Rect2D area() const { return {{0, 0}, color_.extent()}; }
+  TargetFormat format() const { return format_; }
+  const GpuImage& color() const { return color_; }
+  const GpuImage& depth() const { return depth_; }
+  const MemoryLedger& memory() const { return memory_; }
+  static constexpr vk::Format depthFormat = vk::Format::eD32Sfloat;
+
+  /// Reads the colour back: the bytes as stored, and as floats. Not during a measurement.
+  std::vector<std::byte> readBytes(const Device& device) const;
+  Image toImage(std::span<const std::byte> bytes) const;
+
+ private:
+  TargetFormat format_;
+  MemoryLedger memory_;
+  GpuImage color_, depth_;
+};
+
+/// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive it.
+class FrameBindings {
+ public:
+  FrameBindings(const Device& device, const GpuScene& scene, const Target& target);
+  vk::DescriptorSet set() const { return *set_; }
+
+ private:
+  vk::raii::Sampler atlasSampler_ = nullptr, depthSampler_ = nullptr;
+  vk::raii::DescriptorPool pool_ = nullptr;
+  vk::raii::DescriptorSet set_ = nullptr;
+};
+
+}  // namespace oitlab

@@ -1,0 +1,25 @@
+#version 460
+// Captures every transparent fragment in front of the opaque depth into its pixel's list.
+#include "common/surface_input.glsl"
+#include "reference/lists.h"
+
+layout(push_constant, scalar) uniform Push { ListPush push; };
+
+// Without it the depth test would come after the stores below.
+layout(early_fragment_tests) in;
+
+void main() {
+  vec4 color;
+  if (!shade(push.frame.c.materials, surfaceInput(), color)) return;
+  if (gl_HelperInvocation) return;
+  const uint index = atomicAdd(push.counters.c.fragments, 1u);
+  if (index >= push.capacity) return;  // counted all the same: the host grows the pool
+  const uvec2 pixel = uvec2(gl_FragCoord.xy);
+  const uint head = pixel.y * push.frame.c.size.x + pixel.x;
+  Node node;
+  node.color = color;
+  node.depth = gl_FragCoord.z;
+  node.id = push.frame.c.transparentIds.at[gl_PrimitiveID];
+  node.next = atomicExchange(push.heads.at[head], index);
+  push.nodes.at[index] = node;
+}

@@ -1,0 +1,169 @@
+#include "quality/compare.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "quality/colour_map.h"
+#include "quality/tiny_font.h"
+#include "support/temporary_folder.h"
+#include "util/error.h"
+
+namespace oitlab {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Image makeFlat(int width, int height, float value, bool srgb = false) {
+  return {width, height, srgb, std::vector<float>(std::size_t(width) * height * 4, value)};
+}
+
+TEST(CompareImages, EqualImages) {
+  const Comparison result = compareImages(makeFlat(3, 2, 0.3F), makeFlat(3, 2, 0.3F));
+  EXPECT_EQ(result.rmse, 0);
+  EXPECT_EQ(result.psnr, kInfinity);
+  EXPECT_EQ(result.maxError, 0);
+  EXPECT_EQ(result.pixelsOff, 0);
+}
+
+TEST(CompareImages, ValuesWorkedOutByHand) {
+  // 4 pixels, 12 channels; off by 0.5 and 0.25 in one pixel, by 0.25 in another.
+  Image image = makeFlat(2, 2, 0.5F);
+  image.at(0, 0)[0] = 1.0F;
+  image.at(0, 0)[2] = 0.25F;
+  image.at(1, 1)[1] = 0.75F;
+  const Comparison result = compareImages(image, makeFlat(2, 2, 0.5F));
+  const double mse = (0.25 + 0.0625 + 0.0625) / 12;  // 1 / 32
+  EXPECT_DOUBLE_EQ(result.rmse, std::sqrt(mse));
+  EXPECT_NEAR(result.psnr, 15.0514997832, 1e-9);  // 10 log10 32
+  EXPECT_EQ(result.maxError, 0.5);
+  EXPECT_EQ(result.pixelsOffCount, 2U);
+  EXPECT_EQ(result.pixelsOff, 0.5);
+}
+
+TEST(CompareImages, AlphaDoesNotCount) {
+  Image image = makeFlat(1, 1, 0.5F);
+  image.rgba[3] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(compareImages(image, makeFlat(1, 1, 0.5F)).maxError, 0);
+}
+
+TEST(CompareImages, BlackPixelsMayBeWrongToo) {
+  // A share of wrong pixels that counts non-black ones would miss these.
+  const Comparison result = compareImages(makeFlat(2, 1, 0), makeFlat(2, 1, 0.5F));
+  EXPECT_EQ(result.pixelsOff, 1);
+}
+
+TEST(CompareImages, OneStepOfEightBitsIsNotOffWhateverTheRounding) {
+  for (int i = 0; i < 255; ++i) {
+    const Image image = makeFlat(1, 1, float(i) / 255.0F, true);
+    const Image next = makeFlat(1, 1, float(i + 1) / 255.0F, true);
+    EXPECT_EQ(compareImages(image, next).pixelsOffCount, 0U) << i;
+    EXPECT_EQ(compareImages(next, image).pixelsOffCount, 0U) << i;
+    if (i == 254) continue;
+    const Image second = makeFlat(1, 1, float(i + 2) / 255.0F, true);
+    EXPECT_EQ(compareImages(image, second).pixelsOffCount, 1U) << i;
+  }
+}
+
+TEST(CompareImages, NotANumberIsOffByInfinity) {
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), float(kInfinity)};
+  for (const float value : bad) {
+    Image broken = makeFlat(2, 1, 0.5F);
+    broken.rgba[1] = value;
+    const Image whole = makeFlat(2, 1, 0.5F);
+    // In the image, in the reference, and in both at once.
+    for (const auto& [a, b] :
+         {std::pair(broken, whole), std::pair(whole, broken), std::pair(broken, broken)}) {
+      const Comparison result = compareImages(a, b);
+      EXPECT_EQ(result.maxError, kInfinity);
+      EXPECT_EQ(result.rmse, kInfinity);
+      EXPECT_EQ(result.psnr, -kInfinity);
+      EXPECT_EQ(result.pixelsOffCount, 1U);
+    }
+  }
+}
+
+TEST(CompareImages, EncodedMeetsLinear) {
+  const Image encoded = makeFlat(1, 1, 0.5F, true);
+  const Image linear = makeFlat(1, 1, 0.21404114F, false);
+  EXPECT_NEAR(compareImages(encoded, linear).maxError, 0, 1e-6);
+  EXPECT_NEAR(compareImages(linear, encoded).maxError, 0, 1e-6);
+  // Two encoded ones are compared as they are.
+  EXPECT_NEAR(compareImages(encoded, makeFlat(1, 1, 0.25F, true)).maxError, 0.25, 1e-7);
+}
+
+TEST(CompareImages, SizesMustBeEqual) {
+  const std::string message =
+      messageOf<InputError>([] { compareImages(makeFlat(2, 3, 0), makeFlat(3, 2, 0)); });
+  EXPECT_THAT(message, HasSubstr("2 x 3"));
+  EXPECT_THAT(message, HasSubstr("3 x 2"));
+  EXPECT_NE(messageOf<InputError>([] { errorMap(makeFlat(2, 3, 0), makeFlat(3, 2, 0), 1); }), "");
+}
+
+std::array<float, 3> colourAt(const Image& map, int x, int y) {
+  const float* pixel = map.at(x, y);
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+TEST(ErrorMap, ShowsTheLargestChannelOnTheScale) {
+  Image image = makeFlat(100, 4, 0.5F);
+  image.at(1, 0)[2] = 0.55F;  // half of the scale
+  image.at(2, 0)[0] = 0.9F;   // beyond the scale
+  image.at(3, 0)[1] = std::numeric_limits<float>::quiet_NaN();
+  const Image map = errorMap(image, makeFlat(100, 4, 0.5F), 0.1F);
+  EXPECT_TRUE(map.srgb);
+  EXPECT_EQ(map.width, 100);
+  EXPECT_GT(map.height, 4);
+  EXPECT_EQ(colourAt(map, 0, 0), infernoColour(0));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(map.at(1, 0)[c], infernoColour(0.5)[c], 1e-5);
+  EXPECT_EQ(colourAt(map, 2, 0), infernoColour(1));
+  EXPECT_EQ(colourAt(map, 3, 0), (std::array<float, 3>{0, 1, 0}));
+  EXPECT_EQ(colourAt(map, 0, 3), infernoColour(0));
+}
+
+TEST(ErrorMap, LegendRunsFromDarkToBright) {
+  const Image map = errorMap(makeFlat(100, 4, 0), makeFlat(100, 4, 0), 0.1F);
+  // Unit 1: the bar begins after a margin of 2, a digit of 3 and a gap of 2, and ends as far before
+  // the three characters of 0.1 on the right.
+  const int y = 4 + 2;
+  const int right = 100 - 2 - tinyTextWidth("0.1", 1) - 2 - 1;
+  EXPECT_EQ(colourAt(map, 7, y), infernoColour(0));
+  EXPECT_EQ(colourAt(map, right, y), infernoColour(1));
+  EXPECT_EQ(colourAt(map, 2, y), (std::array<float, 3>{1, 1, 1}));  // the corner of the 0
+}
+
+TEST(ErrorMap, SmallImagesGetRoomForTheLegend) {
+  const Image map = errorMap(makeFlat(1, 1, 0), makeFlat(1, 1, 0), 0.00123F);
+  EXPECT_GE(map.width, 64);
+  EXPECT_EQ(map.rgba.size(), std::size_t(map.width) * map.height * 4);
+}
+
+TEST(InfernoColour, GetsLighterAllTheWay) {
+  double last = -1;
+  for (int i = 0; i <= 100; ++i) {
+    const auto [r, g, b] = infernoColour(i / 100.0);
+    const double luminance =
+        0.2126 * srgbDecode(r) + 0.7152 * srgbDecode(g) + 0.0722 * srgbDecode(b);
+    EXPECT_GT(luminance, last) << i;
+    last = luminance;
+  }
+  EXPECT_EQ(infernoColour(-1), infernoColour(0));
+  EXPECT_EQ(infernoColour(2), infernoColour(1));
+}
+
+TEST(TinyText, DrawsADigitAndClips) {
+  Image image = makeFlat(3, 5, 0);
+  drawTinyText(image, 0, 0, 1, "7", {1, 1, 1});
+  std::string picture;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) picture += image.rgba[i] > 0 ? '#' : '.';
+  EXPECT_EQ(picture, "###..#.#.#..#..");
+  EXPECT_EQ(tinyTextWidth("0.1", 2), 22);
+  drawTinyText(image, -2, -2, 3, "88", {1, 1, 1});  // beyond every edge
+}
+
+}  // namespace
+}  // namespace oitlab

@@ -1,0 +1,59 @@
+#include "util/suggest.h"
+
+#include <gtest/gtest.h>
+
+namespace oitlab {
+namespace {
+
+const std::vector<std::string> kMethods = {"reference", "wboit", "mboit", "lucidraster", "ll"};
+
+TEST(DidYouMean, FindsASlipOfTheHand) {
+  EXPECT_EQ(didYouMean("wbiot", kMethods), " (did you mean 'wboit'?)");             // swap
+  EXPECT_EQ(didYouMean("lucidrster", kMethods), " (did you mean 'lucidraster'?)");  // letter lost
+  EXPECT_EQ(didYouMean("wwboit", kMethods), " (did you mean 'wboit'?)");         // letter doubled
+  EXPECT_EQ(didYouMean("referemce", kMethods), " (did you mean 'reference'?)");  // wrong key
+}
+
+TEST(DidYouMean, IgnoresCase) {
+  EXPECT_EQ(didYouMean("WBOIT", kMethods), " (did you mean 'wboit'?)");
+  EXPECT_EQ(didYouMean("width", {"Width"}), " (did you mean 'Width'?)");
+}
+
+TEST(DidYouMean, AllowsAThirdOfTheLettersAndNoMore) {
+  EXPECT_EQ(didYouMean("abcxyf", {"abcdef"}), " (did you mean 'abcdef'?)");  // 2 of 6
+  EXPECT_EQ(didYouMean("abxyzf", {"abcdef"}), "");                           // 3 of 6
+  EXPECT_EQ(didYouMean("ab", {"ac"}), " (did you mean 'ac'?)");              // at least one
+}
+
+TEST(DidYouMean, CountsASwapAsOneSlip) {
+  // Five letters allow one slip; a swap taken as two substitutions would be two.
+  EXPECT_EQ(didYouMean("baxes", {"abxes"}), " (did you mean 'abxes'?)");
+}
+
+TEST(DidYouMean, CompletesAnAbbreviation) {
+  EXPECT_EQ(didYouMean("ref", kMethods), " (did you mean 'reference'?)");
+  EXPECT_EQ(didYouMean("Lucid", kMethods), " (did you mean 'lucidraster'?)");
+  EXPECT_EQ(didYouMean("hair", {"hairballs_and_more", "hairball_scene"}),
+            " (did you mean 'hairball_scene'?)");
+}
+
+TEST(DidYouMean, PrefersASlipToAnAbbreviation) {
+  EXPECT_EQ(didYouMean("boxe", {"boxelder", "boxes"}), " (did you mean 'boxes'?)");
+}
+
+TEST(DidYouMean, StaysSilentWhenNothingIsClose) {
+  EXPECT_EQ(didYouMean("hairball", kMethods), "");
+  EXPECT_EQ(didYouMean("r", kMethods), "");
+  EXPECT_EQ(didYouMean("x", {"y"}), "");
+  EXPECT_EQ(didYouMean("", kMethods), "");
+  EXPECT_EQ(didYouMean("wboit", {}), "");
+}
+
+TEST(JoinNames, SeparatesWithCommas) {
+  EXPECT_EQ(joinNames({}), "");
+  EXPECT_EQ(joinNames({"a"}), "a");
+  EXPECT_EQ(joinNames({"a", "b", "c"}), "a, b, c");
+}
+
+}  // namespace
+}  // namespace oitlab
