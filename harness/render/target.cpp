@@ -67,13 +67,15 @@ std::vector<std::byte> Target::readBytes(const Device& device) const {
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
-    const auto general = vk::ImageLayout::eGeneral;
-    color_.transition(commands, general, general, Stage::eAllCommands, Access::eMemoryWrite,
-                      Stage::eCopy, Access::eTransferRead);
+    using Layout = vk::ImageLayout;
+    color_.transition(commands, Layout::eGeneral, Layout::eTransferSrcOptimal, Stage::eAllCommands,
+                      Access::eMemoryWrite, Stage::eCopy, Access::eTransferRead);
     const vk::BufferImageCopy copy(
         0, 0, 0, vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, 0, 0, 1),
         vk::Offset3D(), vk::Extent3D(width(), height(), 1));
-    commands.copyImageToBuffer(color_.vk(), general, buffer.vk(), copy);
+    commands.copyImageToBuffer(color_.vk(), Layout::eTransferSrcOptimal, buffer.vk(), copy);
+    color_.transition(commands, Layout::eTransferSrcOptimal, Layout::eGeneral, Stage::eCopy, {},
+                      Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
     const vk::MemoryBarrier2 toHost(Stage::eCopy, Access::eTransferWrite, Stage::eHost,
                                     Access::eHostRead);
     vk::DependencyInfo dependency;
