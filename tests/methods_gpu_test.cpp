@@ -31,7 +31,8 @@ TEST_F(Methods, TwoLayersBlendAsWorkedOutByHand) {
   const float redAlpha = 128 / 255.0f, greenAlpha = 64 / 255.0f;  // as stored in 8 bits
   const float transmitted = (1 - redAlpha) * (1 - greenAlpha) * backgroundColor.r;
   EXPECT_NEAR(centerChannel(exact.image, 0), redAlpha * light + transmitted, 1e-5f);
-  EXPECT_NEAR(centerChannel(exact.image, 1), (1 - redAlpha) * greenAlpha * light + transmitted, 1e-5f);
+  EXPECT_NEAR(centerChannel(exact.image, 1), (1 - redAlpha) * greenAlpha * light + transmitted,
+              1e-5f);
   EXPECT_NEAR(centerChannel(exact.image, 2), transmitted, 1e-5f);
   EXPECT_EQ(exact.frame.counters.at("fragments"), 2u * 17 * 11);
   EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 2u);
@@ -136,7 +137,8 @@ TEST_F(Methods, TransparentFragmentsAreTestedAgainstOpaqueDepth) {
                               {{1, 0, 0, 0.5f}, {0, 1, 0, 1}, {0, 0, 1, 0.5f}}, frontCamera());
   Material opaque;
   scene.materials.push_back(opaque);
-  for (int corner = 0; corner < 3; ++corner) scene.vertices[scene.triangles[1][corner]].material = 1;
+  for (int corner = 0; corner < 3; ++corner)
+    scene.vertices[scene.triangles[1][corner]].material = 1;
   RenderFixture fixture(scene, 16, 16);
   const auto exact = fixture.render("reference");
   EXPECT_EQ(exact.frame.counters.at("fragments"), 16u * 16);
@@ -179,7 +181,7 @@ TEST_F(Methods, MemoryIsListedByBuffer) {
 
 TEST(FrameTimer, MasksTimestampsAndRejectsWhatRunsBackwards) {
   EXPECT_EQ(FrameTimer::ticksBetween(10, 25, 64), 15u);
-  EXPECT_EQ(FrameTimer::ticksBetween(250, 4, 8), 10u);  // the 8-bit counter wrapped
+  EXPECT_EQ(FrameTimer::ticksBetween(250, 4, 8), 10u);        // the 8-bit counter wrapped
   EXPECT_EQ(FrameTimer::ticksBetween(0x1fa, 0x204, 8), 10u);  // bits beyond the valid ones differ
   EXPECT_EQ(FrameTimer::ticksBetween(7, 7, 64), std::nullopt);
   EXPECT_EQ(FrameTimer::ticksBetween(25, 10, 64), std::nullopt);

@@ -7,13 +7,13 @@
 namespace oitlab {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string image, reference, map;
   float mapScale = 0.0f;
   bool json = false;
 };
 
-int compare(const Options& options) {
+int compare(const CompareOptions& options) {
   if (!options.map.empty()) checkImagePath(options.map);
   const Image image = readImage(options.image);
   const Image reference = readImage(options.reference);
@@ -49,7 +49,7 @@ int compare(const Options& options) {
 }  // namespace
 
 void addCompare(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* verb = program.add_subcommand("compare", "How far image A is from image B");
   verb->add_option("A", options->image, "Image, .png or .exr")->required();
   verb->add_option("B", options->reference, "Reference image of the same size")->required();

@@ -5,11 +5,11 @@
 namespace oitlab {
 namespace {
 
-struct Options {
+struct InfoOptions {
   bool json = false;
 };
 
-int info(const Options& options) {
+int info(const InfoOptions& options) {
   const auto devices = Device::listDevices();
   const int best = Device::bestDevice(devices);
   nlohmann::json list = nlohmann::json::array();
@@ -64,7 +64,7 @@ int info(const Options& options) {
 }  // namespace
 
 void addInfo(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   CLI::App* verb =
       program.add_subcommand("info", "Devices, their limits, and what each method lacks there");
   verb->add_flag("--json", options->json, "One JSON object on stdout");

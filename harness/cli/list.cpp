@@ -6,7 +6,7 @@
 namespace oitlab {
 namespace {
 
-struct Options {
+struct ListOptions {
   std::string what;
   bool json = false;
 };
@@ -52,7 +52,7 @@ int listScenes(bool asJson) {
 }  // namespace
 
 void addList(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ListOptions>();
   CLI::App* verb = program.add_subcommand(
       "list", "Methods with their parameters (type, range, default, unit), or generated scenes");
   verb->add_option("what", options->what, "methods or scenes")

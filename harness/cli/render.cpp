@@ -9,7 +9,7 @@
 namespace oitlab {
 namespace {
 
-struct Options {
+struct RenderOptions {
   std::string scene, method;
   std::vector<std::string> settings;
   std::string size = "1280x720";
@@ -49,7 +49,7 @@ double quickFrameTime(Renderer& renderer, Method& method, const Camera& camera) 
   return quantileOfSorted(ms, 0.5);
 }
 
-int render(const Options& options) {
+int render(const RenderOptions& options) {
   // Names and values are checked before anything slow begins.
   const MethodInfo& info = findMethod(options.method);
   const Parameters parameters(info.parameters, parseSettings(options.settings), info.name);
@@ -119,7 +119,7 @@ int render(const Options& options) {
 }  // namespace
 
 void addRender(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   CLI::App* verb = program.add_subcommand("render", "Render one image and say what it took");
   verb->add_option("--scene", options->scene,
                    "A name of `oitlab list scenes`, or a .glb/.gltf file")

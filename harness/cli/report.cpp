@@ -11,7 +11,7 @@ namespace oitlab {
 namespace {
 
 /// Runs a program with its output as ours (or thrown away); its exit code, or 127.
-int runProgram(const std::vector<std::string>& arguments, bool quiet) {
+int runCommand(const std::vector<std::string>& arguments, bool quiet) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -39,7 +39,7 @@ std::string findPython() {
   else
     candidates = {"python3", "/usr/bin/python3", "python"};
   for (const std::string& python : candidates)
-    if (runProgram({python, "-c", "import matplotlib, pandas, jinja2"}, true) == 0) {
+    if (runCommand({python, "-c", "import matplotlib, pandas, jinja2"}, true) == 0) {
       if (python != candidates.front())
         fmt::print(stderr, "using {}: {} lacks matplotlib, pandas or jinja2\n", python,
                    candidates.front());
@@ -60,7 +60,7 @@ int report(const std::string& folder) {
   if (const char* before = std::getenv("PYTHONPATH"); before && *before)
     path += std::string(":") + before;
   setenv("PYTHONPATH", path.c_str(), 1);
-  return runProgram({python, "-m", "oitlab_analysis", "report", folder}, false);
+  return runCommand({python, "-m", "oitlab_analysis", "report", folder}, false);
 }
 
 }  // namespace

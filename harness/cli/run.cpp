@@ -6,14 +6,14 @@
 namespace oitlab {
 namespace {
 
-struct Options {
+struct RunOptions {
   std::string file, results, shard = "1/1";
   bool dryRun = false;
   Device::Options device;
 };
 
 int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
-           const std::filesystem::path& results, const Options& options) {
+           const std::filesystem::path& results, const RunOptions& options) {
   const auto devices = Device::listDevices();
   const int index = options.device.index >= 0 ? options.device.index : Device::bestDevice(devices);
   if (index < 0 || index >= int(devices.size()))
@@ -32,7 +32,7 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
   return exitDone;
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   const Experiment experiment = readExperiment(options.file);
   const std::filesystem::path results = options.results.empty()
                                             ? std::filesystem::path("results") / experiment.name
@@ -58,7 +58,7 @@ int run(const Options& options) {
 }  // namespace
 
 void addRun(CLI::App& program, Action& action) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   CLI::App* verb = program.add_subcommand(
       "run", "Run an experiment: measures the cells that the results folder does not hold yet");
   verb->add_option("file", options->file, "The experiment, a .toml file (docs/experiments.md)")

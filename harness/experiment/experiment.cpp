@@ -28,13 +28,22 @@ struct Axes {
   TargetFormat format = TargetFormat::rgba16f;
 };
 
-/// Names of generated scenes stay; paths are taken relative to the experiment's folder.
-std::string resolveSource(const std::string& source, const fs::path& folder) {
-  for (const SceneInfo& info : sceneCatalogue())
+/// Names of generated scenes stay; paths are taken relative to the experiment's folder. A scene
+/// that is neither is said now, not when its turn comes after an hour of measuring.
+std::string resolveSource(const TomlTable& owner, const toml::node& node, const std::string& source,
+                          bool optional, const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const SceneInfo& info : sceneCatalogue()) {
     if (info.name == source) return source;
+    names.push_back(info.name);
+  }
   const fs::path path(source);
-  if (!path.has_extension()) return source;  // a misspelt name: loadScene() says so
-  return path.is_absolute() ? source : fs::relative(folder / path).generic_string();
+  const std::string resolved =
+      path.is_absolute() ? source : fs::relative(folder / path).generic_string();
+  if (!optional && !fs::exists(resolved))
+    owner.failAt(node, fmt::format("scene '{}' is neither a generated one ({}) nor a file{}",
+                                   source, joinNames(names), didYouMean(source, names)));
+  return resolved;
 }
 
 std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, const fs::path& folder,
@@ -42,16 +51,17 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, con
   SceneChoice choice;
   const toml::table* given = node.as_table();
   if (given == nullptr) {
-    choice.spec.source = resolveSource(owner.string(node, "a scene"), folder);
+    choice.spec.source = resolveSource(owner, node, owner.string(node, "a scene"), false, folder);
     return {choice};
   }
   TomlTable table(owner.file(), "a scene", *given);
-  choice.spec.source = resolveSource(table.value<std::string>("source", ""), folder);
-  if (choice.spec.source.empty()) table.failAt(node, "a scene needs a 'source'");
+  const std::string source = table.value<std::string>("source", "");
+  if (source.empty()) table.failAt(node, "a scene needs a 'source'");
+  const bool optional = table.value<bool>("optional", false);
+  choice.spec.source = resolveSource(table, node, source, optional, folder);
   choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
   for (const toml::node* view : table.list("views"))
     choice.views.push_back(table.string(*view, "a view"));
-  const bool optional = table.value<bool>("optional", false);
   std::vector<std::optional<float>> opacities;
   for (const toml::node* opacity : table.list("opacity")) {
     const auto value = opacity->value<double>();

@@ -91,6 +91,7 @@ void Run::writeUnmeasured(const CellSpec& cell, const std::string& status,
   content["status"] = status;
   content["reason"] = reason;
   (status == "failed" ? summary.failed : summary.skipped) += 1;
+  progress_.clear();
   fmt::print(stderr, "{}: {}: {}\n", status, cell.label(), reason);
   writeCell(cell, std::move(content));
 }

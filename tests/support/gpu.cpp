@@ -56,8 +56,11 @@ Scene triangleScene(const std::vector<std::array<glm::vec3, 3>>& triangles,
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto first = std::uint32_t(scene.vertices.size());
     for (const glm::vec3& position : triangles[i])
-      scene.vertices.push_back({position, packNormal({0.0f, 0.0f, 1.0f}), {0.0f, 0.0f},
-                                packColor(colors[i % colors.size()]), 0});
+      scene.vertices.push_back({position,
+                                packNormal({0.0f, 0.0f, 1.0f}),
+                                {0.0f, 0.0f},
+                                packColor(colors[i % colors.size()]),
+                                0});
     scene.triangles.emplace_back(first, first + 1, first + 2);
   }
   computeBounds(scene);

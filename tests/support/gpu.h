@@ -35,7 +35,8 @@ class RenderFixture {
   };
 
   /// One instrumented frame with `method` from the scene's default view.
-  Result render(const std::string& method, const std::map<std::string, std::string>& parameters = {},
+  Result render(const std::string& method,
+                const std::map<std::string, std::string>& parameters = {},
                 std::optional<Camera> camera = {});
 
   Renderer& renderer() { return renderer_; }

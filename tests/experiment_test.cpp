@@ -1,0 +1,154 @@
+// Experiments: what a TOML file spans, how it is dealt out, and what its mistakes are answered
+// with.
+#include "experiment/run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/temporary_folder.h"
+#include "util/error.h"
+#include "util/text_file.h"
+
+namespace oitlab::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class Experiments : public TemporaryFolder {
+ protected:
+  Experiment read(const std::string& text) {
+    const auto path = folder_ / "x.toml";
+    writeFileAtomically(path, text);
+    return readExperiment(path);
+  }
+  std::string errorOf(const std::string& text) {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+constexpr const char* small = R"(
+scenes = ["boxes", "planes"]
+sizes = ["64x32", "32x16"]
+[[methods]]
+method = "blend"
+order = ["submission", "sorted"]
+[[methods]]
+method = "reference"
+)";
+
+TEST_F(Experiments, SpansTheProductOfItsLists) {
+  const Experiment experiment = read(small);
+  EXPECT_EQ(experiment.name, "x");
+  ASSERT_EQ(experiment.cells.size(), 2u * 2 * 3);
+  EXPECT_EQ(experiment.cells[0].label(), "boxes blend 64x32");
+  EXPECT_EQ(experiment.cells[1].label(), "boxes blend order=sorted 64x32");
+  EXPECT_EQ(experiment.cells[2].label(), "boxes reference 64x32");
+  EXPECT_EQ(experiment.cells[3].label(), "boxes blend 32x16");
+  EXPECT_EQ(experiment.cells.back().label(), "planes reference 32x16");
+}
+
+TEST_F(Experiments, SweepsInheritWhatTheyLeaveOutAndRepetitionsAreDropped) {
+  const Experiment experiment = read(R"(
+sizes = ["64x32"]
+methods = ["blend"]
+[[sweep]]
+scenes = [{ source = "boxes", opacity = [0.5, 0.8], views = ["default", "orbit:0,0,9"] }]
+[[sweep]]
+scenes = ["planes"]
+methods = ["blend", "blend", { method = "reference", initial_depth = 2 }]
+)");
+  std::vector<std::string> labels;
+  for (const CellSpec& cell : experiment.cells) labels.push_back(cell.label());
+  EXPECT_THAT(labels,
+              ::testing::ElementsAre(
+                  "boxes opacity 0.5 blend 64x32", "boxes opacity 0.5 orbit:0,0,9 blend 64x32",
+                  "boxes opacity 0.8 blend 64x32", "boxes opacity 0.8 orbit:0,0,9 blend 64x32",
+                  "planes blend 64x32", "planes reference initial_depth=2 64x32"));
+}
+
+TEST_F(Experiments, MistakesNameFileLineAndRemedy) {
+  EXPECT_THAT(errorOf("scenes = [\n"), HasSubstr("x.toml:"));
+  EXPECT_THAT(errorOf("scnes = [\"boxes\"]\n"), AllOf(HasSubstr("x.toml:1: unknown key 'scnes'"),
+                                                      HasSubstr("did you mean 'scenes'")));
+  EXPECT_THAT(errorOf("scenes = [\"boxs\"]\nmethods = [\"blend\"]\n"),
+              AllOf(HasSubstr("x.toml:1"), HasSubstr("boxs"), HasSubstr("did you mean 'boxes'")));
+  EXPECT_THAT(errorOf("scenes = [\"nowhere.glb\"]\nmethods = [\"blend\"]\n"),
+              AllOf(HasSubstr("x.toml:1"), HasSubstr("nowhere.glb")));
+  EXPECT_THAT(errorOf("scenes = [\"boxes\"]\nmethods = [\"blnd\"]\n"),
+              AllOf(HasSubstr("x.toml:2"), HasSubstr("did you mean 'blend'")));
+  EXPECT_THAT(errorOf("scenes = [\"boxes\"]\n[[methods]]\nmethod = \"blend\"\nordr = \"sorted\"\n"),
+              AllOf(HasSubstr("x.toml:2"), HasSubstr("did you mean 'order'")));
+  EXPECT_THAT(
+      errorOf("scenes = [\"boxes\"]\nmethods = [{method = \"blend\", order = \"sortd\"}]\n"),
+      AllOf(HasSubstr("submission | sorted"), HasSubstr("did you mean 'sorted'")));
+  EXPECT_THAT(
+      errorOf("scenes = [\"boxes\"]\nmethods = [{method = \"reference\", initial_depth = -1}]\n"),
+      AllOf(HasSubstr("out of range"), HasSubstr("0 to 1024")));
+  EXPECT_THAT(errorOf("sizes = [\"64\"]\nscenes = [\"boxes\"]\nmethods = [\"blend\"]\n"),
+              AllOf(HasSubstr("x.toml:1"), HasSubstr("WxH")));
+  EXPECT_THAT(errorOf("scenes = [{source = \"boxes\", opacity = 1.5}]\nmethods = [\"blend\"]\n"),
+              HasSubstr("above 0, up to 1"));
+  EXPECT_THAT(errorOf("format = \"rgb\"\nscenes = [\"boxes\"]\nmethods = [\"blend\"]\n"),
+              HasSubstr("rgba16f"));
+  EXPECT_THAT(errorOf("[measure]\ntime_limit = \"long\"\n"), HasSubstr("x.toml:2"));
+  EXPECT_THAT(errorOf("[measure]\ntime_limit = 0\n"), HasSubstr("out of range"));
+  EXPECT_THAT(errorOf("name = \"empty\"\n"), HasSubstr("no cells"));
+}
+
+TEST_F(Experiments, AnOptionalSceneThatIsNotThereIsLeftOutWithANote) {
+  const Experiment experiment = read(R"(
+scenes = ["boxes", { source = "nowhere.glb", optional = true }]
+methods = ["blend"]
+)");
+  EXPECT_EQ(experiment.cells.size(), 1u);
+  ASSERT_EQ(experiment.notes.size(), 1u);
+  EXPECT_THAT(experiment.notes[0], HasSubstr("nowhere.glb"));
+}
+
+TEST_F(Experiments, ShardsAreDisjointAndTheirUnionIsTheWhole) {
+  const auto cells = read(small).cells;
+  for (const std::uint32_t count : {1u, 2u, 3u, 4u, 5u, 12u, 20u}) {
+    std::multiset<std::string> seen;
+    for (std::uint32_t index = 1; index <= count; ++index)
+      for (const CellSpec& cell : shardCells(cells, {index, count})) seen.insert(cell.label());
+    std::multiset<std::string> all;
+    for (const CellSpec& cell : cells) all.insert(cell.label());
+    EXPECT_EQ(seen, all) << count << " shards";
+  }
+  // Four groups in two shards: no group is torn apart.
+  for (const std::uint32_t index : {1u, 2u})
+    for (const auto& group : groupCells(shardCells(cells, {index, 2}))) EXPECT_EQ(group.size(), 3u);
+}
+
+TEST_F(Experiments, ShardTextIsChecked) {
+  EXPECT_EQ(parseShard("2/4").index, 2u);
+  EXPECT_EQ(parseShard("2/4").count, 4u);
+  for (const std::string text : {"", "2", "0/4", "5/4", "a/b", "1/", "/1", "1/2x", "-1/2"})
+    EXPECT_THROW(parseShard(text), InputError) << text;
+}
+
+TEST_F(Experiments, CellIdsTellCellsAndDevicesApart) {
+  const auto cells = read(small).cells;
+  DeviceInfo a, b;
+  a.name = "A";
+  b.name = "B";
+  std::set<std::string> ids;
+  for (const CellSpec& cell : cells) {
+    ids.insert(cellId(cell, a));
+    ids.insert(cellId(cell, b));
+    EXPECT_EQ(cellId(cell, a), cellId(cell, a));
+  }
+  EXPECT_EQ(ids.size(), 2 * cells.size());
+  EXPECT_THAT(cellId(cells[1], a), HasSubstr("boxes-blend-order-sorted-64x32-"));
+}
+
+}  // namespace
+}  // namespace oitlab::testing
