@@ -13,7 +13,8 @@ double quantileOfSorted(std::span<const double> sorted, double q);
 
 /// A summary of the frame times (or stage times) of a cell, in the unit of the samples.
 struct Summary {
-  std::uint64_t count = 0;
+  std::uint64_t count = 0;      ///< finite samples: all below is of these
+  std::uint64_t notFinite = 0;  ///< NaN and infinite samples, left out
   double median = 0, q1 = 0, q3 = 0, mean = 0, min = 0, max = 0, p95 = 0;
   double ciLow = 0, ciHigh = 0;  ///< 95% interval of the median: bootstrap over blocks
 };
@@ -32,25 +33,31 @@ class StopRule {
   struct Limits {
     double relativeSpread = 0.005;  ///< "spread": below it the cell is done
     int minBlocks = 5;              ///< never judged on fewer
-    int settleWindow = 5;           ///< "settled": blocks without improvement of the interval
+    int settleWindow = 5;           ///< "settled": blocks over which the median stood still
     double timeLimitSeconds = 10;   ///< "time_limit": wall-clock time spent on this cell
     int maxBlocks = 200;            ///< "max_blocks"
   };
   explicit StopRule(Limits limits) : limits_(limits) {}
 
-  /// Adds the median of one finished block and the wall-clock seconds that the block took.
+  /// Adds the median of one finished block and the wall-clock seconds that the block took. A block
+  /// without a usable frame (NaN) counts towards the limits only, lest the cell never ends.
   void addBlock(double blockMedian, double seconds);
 
-  /// Interquartile range of the block medians over their median.
+  /// Interquartile range of the block medians over their median; infinity while there is none, or
+  /// where the median is not positive.
   double relativeSpread() const;
 
   /// "" while more blocks are wanted, else "spread", "settled", "time_limit" or "max_blocks".
   /// Settled: over the last `settleWindow` blocks the running median moved by less than
   /// `relativeSpread` in all, so that more blocks of the same noise would not change the answer.
+  /// The time limit and `maxBlocks` hold from the first block on, `minBlocks` or not.
   std::string stopReason() const;
 
  private:
+  bool hasSettled() const;
+
   Limits limits_;
+  int blocks_ = 0;
   std::vector<double> blockMedians_;
   std::vector<double> runningMedians_;
   double seconds_ = 0;

@@ -19,4 +19,17 @@ std::filesystem::path dataRoot() {
   return ignored ? fs::current_path() : program.parent_path();
 }
 
+std::filesystem::path cacheRoot() {
+  namespace fs = std::filesystem;
+  auto variable = [](const char* name) -> fs::path {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  if (const fs::path own = variable("OITLAB_CACHE"); !own.empty()) return own;
+  if (const fs::path xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg / "oitlab";
+  if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "oitlab";
+  std::error_code ignored;
+  return fs::temp_directory_path(ignored) / "oitlab";
+}
+
 }  // namespace oitlab

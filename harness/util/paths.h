@@ -9,4 +9,8 @@ namespace oitlab {
 /// else the folder of the executable. Throws InputError when OITLAB_ROOT is not a folder.
 std::filesystem::path dataRoot();
 
+/// Where things may be kept that can be made again (compiled shaders): OITLAB_CACHE if set, else
+/// oitlab/ in XDG_CACHE_HOME or ~/.cache, else in the system's temporary folder. Not made here.
+std::filesystem::path cacheRoot();
+
 }  // namespace oitlab

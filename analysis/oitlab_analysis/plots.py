@@ -1,0 +1,253 @@
+"""Bar charts of a section: frame times with their intervals, and stage times stacked.
+
+The vertical unit of every chart is the inch: bars keep their thickness and texts their room however
+many there are, and charts only grow longer. Legends stand above the axes and the file is cut to
+what is drawn, so that a legend covers no bar.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")  # no display is needed or looked for
+import matplotlib.pyplot as pyplot  # noqa: E402
+import pandas  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+
+from . import formats  # noqa: E402
+from .sections import Section  # noqa: E402
+
+# Okabe and Ito's colours, told apart by all common forms of colour blindness; black is for text.
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
+# For prints in grey.
+HATCHES = ("", "///", "...", "xx", "\\\\\\", "--", "oo", "++", "||", "**")
+STYLE = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine
+    "font.size": 9,
+    "hatch.linewidth": 0.5,
+    "svg.hashsalt": "oitlab",  # the same file for the same data
+    "axes.axisbelow": True,
+}
+LOG_ABOVE = 30
+BARS_PER_CHART = 60
+BAR, BETWEEN_SETTINGS, LINE = 0.19, 0.2, 0.155  # inches
+LABEL_CHARACTERS = 26
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart that was saved as `name`.png and `name`.svg in the folder plots."""
+
+    name: str
+    caption: str
+
+
+def save_charts(section: Section, number: int, folder: Path) -> list[Chart]:
+    """Draws the charts of a section; long ones are spread over several files."""
+    measured = section.table[section.table["status"] == "ok"]
+    if measured.empty:
+        return []
+    folder.mkdir(exist_ok=True)
+    charts = []
+    with matplotlib.rc_context(STYLE):
+        pages = paginate(section)
+        for index, page in enumerate(pages):
+            part = f" ({index + 1} of {len(pages)})" if len(pages) > 1 else ""
+            suffix = f"-{index + 1}" if len(pages) > 1 else ""
+            name = f"frame-times-{number}{suffix}"
+            _save(draw_frame_times(section, page), folder / name)
+            charts.append(Chart(name, f"Frame times{part}: medians with 95% intervals."))
+        for index, page in enumerate(pages):
+            part = f" ({index + 1} of {len(pages)})" if len(pages) > 1 else ""
+            suffix = f"-{index + 1}" if len(pages) > 1 else ""
+            page = [(name, cells[cells[stage_columns(cells)].notna().any(axis=1)])
+                    for name, cells in page]
+            page = [(name, cells) for name, cells in page if not cells.empty]
+            if not page:
+                continue
+            name = f"stages-{number}{suffix}"
+            _save(draw_stages(section, page), folder / name)
+            charts.append(Chart(name, f"Stages{part}: medians of a separate run with timers between "
+                                      "the stages, which change what they time; the mark is the "
+                                      "whole frame without them."))
+    return charts
+
+
+def stage_columns(table: pandas.DataFrame) -> list[str]:
+    return [name for name in table.columns if name.startswith("stage.")]
+
+
+def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
+    """The settings of a section in charts of at most about 60 bars each."""
+    pages: list[list] = [[]]
+    bars = 0
+    for name, cells in section.settings():
+        if pages[-1] and bars + len(cells) > BARS_PER_CHART:
+            pages.append([])
+            bars = 0
+        pages[-1].append((name, cells))
+        bars += len(cells)
+    return pages
+
+
+def method_styles(table: pandas.DataFrame) -> dict[str, tuple[str, str]]:
+    """Label -> colour and hatch. One colour a method, another hatch for each of its variants."""
+    methods = list(dict.fromkeys(table.sort_values("method", kind="stable")["method"]))
+    methods.sort(key=lambda method: method != "blend")
+    labels = list(dict.fromkeys(zip(table["method"], table["label"])))
+    labels.sort(key=lambda pair: (methods.index(pair[0]), formats.natural_key(pair[1])))
+    return {
+        label: (COLOURS[methods.index(method) % len(COLOURS)], HATCHES[i % len(HATCHES)])
+        for i, (method, label) in enumerate(labels)
+    }
+
+
+def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> Figure:
+    """Horizontal bars grouped by setting; every chart of a section has the same axis."""
+    styles = method_styles(section.table)
+    middles, names, rows, y = [], [], [], 0.0
+    for name, cells in page:
+        lines = textwrap.wrap(name, LABEL_CHARACTERS) or [""]
+        height = max(len(cells) * BAR, len(lines) * LINE)
+        top = y + (height - len(cells) * BAR) / 2
+        rows += [(top + (i + 0.5) * BAR, row) for i, (_, row) in enumerate(cells.iterrows())]
+        middles.append(y + height / 2)
+        names.append("\n".join(lines))
+        y += height + BETWEEN_SETTINGS
+    figure, axes = _axes(y)
+    low, high = _set_time_axis(axes, section.table)
+    for position, row in rows:
+        _draw_bar(axes, position, row, styles[row["label"]], low)
+    axes.set_yticks(middles, names)
+    shown = {row["label"] for _, row in rows}
+    handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=name)
+               for name, (c, h) in styles.items() if name in shown]
+    _legend(figure, axes, handles)
+    _footer(axes, "frame time, ms (median, 95% interval)" + (
+        "; log scale: compare ends, not lengths" if axes.get_xscale() == "log" else ""), section)
+    return figure
+
+
+def _axes(height: float) -> tuple[Figure, Axes]:
+    """Axes of 6.5 inches by `height`, y downwards in inches."""
+    figure = pyplot.figure(figsize=(9, height + 1))
+    axes = figure.add_axes((0.2, 0.5 / (height + 1), 6.5 / 9, height / (height + 1)))
+    axes.set_ylim(height - BETWEEN_SETTINGS / 2, -BETWEEN_SETTINGS / 2)
+    axes.tick_params(axis="y", length=0)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis="x", color="#dddddd", linewidth=0.6)
+    return figure, axes
+
+
+def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> tuple[float, float]:
+    """Linear from 0, or logarithmic if the times span more than 30x; room right for the figures."""
+    medians = table["frame_ms.median"].dropna()
+    ends = table["frame_ms.ci_high"].dropna()
+    least, most = medians.min(), max(medians.max(), ends.max())
+    if medians.max() / least > LOG_ABOVE:
+        axes.set_xscale("log")
+        low, high = least / 2, most * (most / (least / 2)) ** 0.14
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    else:
+        low, high = 0.0, most * 1.14
+    axes.set_xlim(low, high)
+    return low, high
+
+
+def _draw_bar(
+    axes: Axes, y: float, row: pandas.Series, style: tuple[str, str], low: float
+) -> None:
+    colour, hatch = style
+    if row["status"] != "ok":
+        axes.annotate(f"{row['label']}: {row['status']}", (low, y), (3, 0),
+                      textcoords="offset points", va="center", size=7, style="italic")
+        return
+    median = row["frame_ms.median"]
+    axes.barh(y, median - low, BAR * 0.92, low, color=colour, hatch=hatch,
+              edgecolor="black", linewidth=0.5)
+    ends = row["frame_ms.ci_low"], row["frame_ms.ci_high"]
+    axes.plot(ends, (y, y), color="black", linewidth=1.2, solid_capstyle="butt")
+    axes.plot(ends, (y, y), color="black", marker="|", markersize=5, linestyle="none")
+    axes.annotate(formats.number(median), (max(median, ends[1]), y), (4, 0),
+                  textcoords="offset points", va="center", size=7)
+
+
+def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> Figure:
+    """One panel per setting with an axis of its own, so that a fast scene is not lost."""
+    columns = [c for c in stage_columns(section.table) if section.table[c].notna().any()]
+    styles = {c: (COLOURS[i % len(COLOURS)], HATCHES[i % len(HATCHES)])
+              for i, c in enumerate(columns)}
+    head, foot = 0.35, 0.35  # inches above and below the bars of a panel: title, tick labels
+    panels = [(name, cells, len(cells) * BAR * 1.3 + 0.1) for name, cells in page]
+    height = sum(head + bars + foot for _, _, bars in panels)
+    figure = pyplot.figure(figsize=(9, height))
+    top, all_axes = 0.0, []
+    for name, cells, bars in panels:
+        top += head
+        axes = figure.add_axes((0.25, 1 - (top + bars) / height, 6 / 9, bars / height))
+        _draw_stage_panel(axes, name, cells, styles)
+        all_axes.append(axes)
+        top += bars + foot
+    used = {c for _, cells, _ in panels for c in columns if cells[c].notna().any()}
+    handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=stage_name(s))
+               for s, (c, h) in styles.items() if s in used]
+    handles.append(pyplot.Line2D([], [], color="black", marker="|", markersize=9, linestyle="none",
+                                 markeredgewidth=2, label="whole frame, separate run"))
+    _legend(figure, all_axes[0], handles, head)
+    _footer(all_axes[-1], "stage times, ms (medians)", section)
+    return figure
+
+
+def stage_name(column: str) -> str:
+    return column.removeprefix("stage.").removesuffix("_ms")
+
+
+def _draw_stage_panel(
+    axes: Axes, name: str, cells: pandas.DataFrame, styles: dict[str, tuple[str, str]]
+) -> None:
+    for y, (_, row) in enumerate(cells.iterrows()):
+        start = 0.0
+        for column, (colour, hatch) in styles.items():
+            if formats.is_number(row[column]):
+                axes.barh(y, row[column], 0.7, start, color=colour, hatch=hatch,
+                          edgecolor="black", linewidth=0.5)
+                start += row[column]
+        axes.plot(row["frame_ms.median"], y, color="black", marker="|", markersize=12,
+                  markeredgewidth=2, linestyle="none")
+    axes.set_ylim(len(cells) - 0.45, -0.55)
+    axes.set_xlim(left=0)
+    axes.set_yticks(range(len(cells)), [textwrap.shorten(n, 40) for n in cells["label"]])
+    axes.tick_params(axis="y", length=0)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis="x", color="#dddddd", linewidth=0.6)
+    axes.set_title(name, loc="left", size=9, weight="bold")
+
+
+def _legend(figure: Figure, axes: Axes, handles: list, above: float = 0.0) -> None:
+    """A legend right above the axes, `above` inches up, in as many columns as fit."""
+    longest = max(len(handle.get_label()) for handle in handles)
+    height = axes.get_position().height * figure.get_figheight()
+    axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0, 1 + above / height),
+                borderaxespad=0.3, ncol=max(1, min(len(handles), 100 // (longest + 7))), frameon=False,
+                handlelength=2.2, handleheight=1.1)
+
+
+def _footer(axes: Axes, text: str, section: Section) -> None:
+    """The axis title, and below it what the chart was measured on: charts get copied around."""
+    source = textwrap.fill(f"{section.title} · commit {section.context['Commit']}", 110)
+    axes.set_xlabel(f"{text}\n{source}", size=8)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Writes PNG and SVG without a date, so that the same data gives the same files."""
+    figure.savefig(path.with_name(path.name + ".png"), dpi=150, bbox_inches="tight",
+                   facecolor="white", pad_inches=0.12)
+    figure.savefig(path.with_name(path.name + ".svg"), bbox_inches="tight", facecolor="white",
+                   pad_inches=0.12, metadata={"Date": None})
+    pyplot.close(figure)

@@ -1,0 +1,151 @@
+"""Comparing the frame times of two cells, and checking what a cell says of its own samples.
+
+Cells of a group are measured interleaved, in blocks of some frames each: block 7 of method A ran
+right beside block 7 of method B, under the same clocks and temperature. The unit of comparison is
+therefore the pair of blocks, not the frame: frames of one block are not independent, and treating
+them so makes intervals too narrow (Kalibera and Jones, "Rigorous Benchmarking in Reasonable Time",
+ISMM 2013; Georges, Buytaert and Eeckhout, "Statistically Rigorous Java Performance Evaluation",
+OOPSLA 2007).
+
+Definitions
+-----------
+ratio     For each block that both cells have: the median frame time of the cell over the median
+          frame time of the baseline. Reported is the median of these ratios; below 1 the cell is
+          faster than its baseline.
+interval  95% percentile bootstrap of that median, blocks drawn with replacement (Efron and
+          Tibshirani, "An Introduction to the Bootstrap", 1993, chapter 13). Seeded, so that the
+          same cells give the same report. With fewer than 6 common blocks there is none: the widest
+          distribution-free interval of a median, from the least to the greatest of n values, covers
+          it with 1 - 2^(1-n), which is 0.9375 for n = 5 and 0.969 for n = 6.
+baseline  The `blend` cell of the group (the fastest, if there are several); in a group without one,
+          the fastest cell by median frame time.
+verdict   The first of these that holds:
+          "baseline"   the cell is the baseline itself
+          "ambiguous"  no interval
+          "same"       the interval lies within [1/1.01, 1.01]: a difference above 1% is ruled out
+                       (an equivalence test by interval inclusion, Schuirmann 1987, two-sided 95%)
+          "faster"     the whole interval lies below 1
+          "slower"     the whole interval lies above 1
+          "ambiguous"  the interval holds 1 and reaches beyond 1%: more blocks are needed
+          Verdicts are not corrected for the number of comparisons: of many true equalities about
+          one in twenty may be called faster or slower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy
+
+LEVEL = 0.95
+SAME_WITHIN = 1.01
+FEWEST_BLOCKS = 6
+RESAMPLES = 4000
+SEED = 20240229
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A cell against its baseline; `low` and `high` are None where there is no interval."""
+
+    ratio: float | None
+    low: float | None
+    high: float | None
+    blocks: int
+    verdict: str
+
+
+def percentile(values: Sequence[float], percent: float) -> float:
+    """Linear between order statistics (type 7 of Hyndman and Fan, "Sample Quantiles", 1996)."""
+    return float(numpy.percentile(numpy.asarray(values, dtype=float), percent))
+
+
+def block_medians(times_ms: Sequence[float], blocks: Sequence[int]) -> dict[int, float]:
+    """The median frame time of each block, in ms."""
+    times, numbers = numpy.asarray(times_ms, dtype=float), numpy.asarray(blocks)
+    return {int(b): float(numpy.median(times[numbers == b])) for b in numpy.unique(numbers)}
+
+
+def bootstrap_interval(values: Sequence[float], seed: int = SEED) -> tuple[float, float] | None:
+    """95% percentile bootstrap interval of the median; None for fewer than 6 values."""
+    data = numpy.asarray(values, dtype=float)
+    if len(data) < FEWEST_BLOCKS:
+        return None
+    draws = numpy.random.default_rng(seed).integers(0, len(data), (RESAMPLES, len(data)))
+    medians = numpy.median(data[draws], axis=1)
+    tail = 100 * (1 - LEVEL) / 2
+    low, high = numpy.percentile(medians, [tail, 100 - tail])
+    return float(low), float(high)
+
+
+def verdict(interval: tuple[float, float] | None) -> str:
+    """The verdict on the interval of a ratio to the baseline, by the rules of this module."""
+    if interval is None:
+        return "ambiguous"
+    low, high = interval
+    if 1 / SAME_WITHIN <= low and high <= SAME_WITHIN:
+        return "same"
+    if high < 1:
+        return "faster"
+    if low > 1:
+        return "slower"
+    return "ambiguous"
+
+
+def compare(cell: dict[int, float], baseline: dict[int, float]) -> Comparison:
+    """Compares the block medians of a cell with those of its baseline, paired by block number."""
+    common = sorted(cell.keys() & baseline.keys())
+    if not common:
+        return Comparison(None, None, None, 0, "ambiguous")
+    ratios = [cell[block] / baseline[block] for block in common]
+    interval = bootstrap_interval(ratios)
+    low, high = interval or (None, None)
+    return Comparison(float(numpy.median(ratios)), low, high, len(common), verdict(interval))
+
+
+def choose_baseline(methods: dict[str, str], medians_ms: dict[str, float]) -> str:
+    """The id of the baseline among the cells of a group (id -> method, id -> median)."""
+    blends = [cell for cell, method in methods.items() if method == "blend"]
+    return min(blends or methods, key=lambda cell: (medians_ms[cell], cell))
+
+
+def compare_group(cells: list[dict]) -> dict[str, tuple[str, Comparison]]:
+    """For each cell of a group: the id of its baseline, and the comparison with it."""
+    medians = {cell["id"]: cell["statistics"]["frame"]["median"] for cell in cells}
+    baseline = choose_baseline({cell["id"]: cell["method"] for cell in cells}, medians)
+    blocks = {
+        cell["id"]: block_medians(cell["samples"]["frame_ms"], cell["samples"]["block"])
+        for cell in cells
+    }
+    result = {cell: (baseline, compare(blocks[cell], blocks[baseline])) for cell in blocks}
+    result[baseline] = (baseline, Comparison(1.0, None, None, len(blocks[baseline]), "baseline"))
+    return result
+
+
+def is_quantile(value: float, samples: Sequence[float], percent: float) -> bool:
+    """Whether a value can be this percentile of the samples, by any of the usual definitions.
+
+    The definitions that Hyndman and Fan list differ by less than one rank to either side; the
+    allowance of 1e-5 is for times written with six digits.
+    """
+    ordered = numpy.sort(numpy.asarray(samples, dtype=float))
+    rank = percent / 100 * len(ordered)
+    last = len(ordered) - 1
+    low = ordered[min(max(int(numpy.floor(rank)) - 2, 0), last)]
+    high = ordered[min(int(numpy.ceil(rank)), last)]
+    return bool(low * (1 - 1e-5) <= value <= high * (1 + 1e-5))
+
+
+def disagreements(cell: dict) -> list[str]:
+    """Recorded statistics of the frame that its own samples contradict (empty if all is well)."""
+    frame, samples = cell["statistics"]["frame"], cell["samples"]["frame_ms"]
+    quantiles = {"q1": 25, "median": 50, "q3": 75, "p95": 95, "min": 0, "max": 100}
+    found = [
+        f"{key} {frame[key]:g} ms against {percentile(samples, percent):g} ms"
+        for key, percent in quantiles.items()
+        if not is_quantile(frame[key], samples, percent)
+    ]
+    if frame["count"] != len(samples):
+        found.append(f"count {frame['count']} against {len(samples)}")
+    return found

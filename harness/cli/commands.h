@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace oitlab {
+
+/// What the chosen verb does; returns the exit code.
+using Action = std::function<int()>;
+
+/// Exit codes (docs/design.md, "Errors").
+enum ExitCode { exitDone = 0, exitSomeFailed = 1, exitBadInput = 2, exitNoDevice = 3 };
+
+// Each adds its verb to the program and sets `action` when the verb is given.
+void addInfo(CLI::App& program, Action& action);
+void addList(CLI::App& program, Action& action);
+void addRender(CLI::App& program, Action& action);
+void addRun(CLI::App& program, Action& action);
+void addCompare(CLI::App& program, Action& action);
+void addReport(CLI::App& program, Action& action);
+
+}  // namespace oitlab

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "gpu/device.h"
+
+namespace oitlab {
+
+/// --device and --validation, alike for every verb that opens a device.
+inline void addDeviceOptions(CLI::App& verb, Device::Options& options) {
+  verb.add_option("--device", options.index, "Device number as `oitlab info` lists them (default: a GPU if there is one)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  verb.add_flag("--validation", options.validation,
+                "Vulkan validation layers, synchronization included (slow; marked in results)");
+}
+
+}  // namespace oitlab

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "experiment/experiment.h"
+
+namespace oitlab {
+
+// The pieces of JSON that `render --json`, `info --json` and the cells share.
+
+nlohmann::json describeDevice(const DeviceInfo& info);
+nlohmann::json describeCamera(const Camera& camera);
+
+/// {"total": N, "method": N, "buffers": {name: N}}
+nlohmann::json describeMemory(const Renderer& renderer, const Method& method);
+
+/// Commit, build type, validation, command line, date and the shaders of this method.
+nlohmann::json describeProvenance(const Device& device, const std::string& method);
+
+/// The command line of this process, for provenance; set once by main().
+void setCommandLine(int argc, char** argv);
+
+/// {"name": ..., "type": ...} of every registered method's parameters.
+nlohmann::json describeMethod(const MethodInfo& info);
+
+}  // namespace oitlab

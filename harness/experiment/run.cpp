@@ -1,0 +1,260 @@
+#include "experiment/run.h"
+
+#include "commit.h"
+#include "experiment/describe.h"
+#include "image/hash.h"
+#include "quality/compare.h"
+#include "util/error.h"
+#include "util/json_file.h"
+#include "util/progress.h"
+
+namespace oitlab {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json describeSummary(const Series& series, std::uint64_t seed) {
+  const Summary s = summarize(series.ms, series.block, seed);
+  return {{"count", s.count}, {"median", s.median}, {"q1", s.q1},   {"q3", s.q3},   {"mean", s.mean},
+          {"min", s.min},     {"max", s.max},       {"p95", s.p95}, {"ci95", {s.ciLow, s.ciHigh}}};
+}
+
+json describeQuality(const Image& image, const Image& reference, const std::string& name) {
+  const Comparison c = compareImages(image, reference);
+  return {{"reference", name},
+          {"rmse", c.rmse},
+          {"psnr", std::isfinite(c.psnr) ? json(c.psnr) : json()},
+          {"max_error", c.maxError},
+          {"pixels_off", c.pixelsOff}};
+}
+
+/// One run over a results folder.
+class Run {
+ public:
+  Run(const Device& device, const Experiment& experiment, fs::path results, Progress& progress)
+      : device_(device), experiment_(experiment), results_(std::move(results)), progress_(progress) {}
+
+  void measureGroup(const std::vector<CellSpec>& cells);
+
+  RunSummary summary;
+
+ private:
+  /// What every cell says, measured or not.
+  json header(const CellSpec& cell) const;
+  void writeCell(const CellSpec& cell, json content);
+  void writeUnmeasured(const CellSpec& cell, const std::string& status, const std::string& reason);
+  void writeMeasured(const CellSpec& cell, const Renderer& renderer, const Method& method,
+                     const Camera& camera, const Measurement& measurement,
+                     const std::optional<Image>& reference);
+  std::optional<Image> renderReference(Renderer& renderer, const Camera& camera) const;
+  void measureOn(const std::vector<CellSpec>& cells);
+
+  const Device& device_;
+  const Experiment& experiment_;
+  fs::path results_;
+  Progress& progress_;
+};
+
+json Run::header(const CellSpec& cell) const {
+  json content = cell.identity();
+  content["schema"] = 1;
+  content["id"] = cellId(cell, device_.info());
+  content["experiment"] = experiment_.name;
+  content["seed"] = experiment_.measure.seed;
+  json group = cell.identity();
+  group.erase("method");
+  group.erase("parameters");
+  const std::string text = group.dump() + device_.info().name;
+  content["group"] = imageHash(std::as_bytes(std::span(text))).substr(0, 16);
+  content["scene"]["name"] = fs::path(cell.scene.source).stem().string();
+  if (!cell.scene.opacity) content["scene"]["opacity"] = nullptr;
+  content["device"] = describeDevice(device_.info());
+  content["provenance"] = describeProvenance(device_, cell.method);
+  content["reason"] = "";
+  return content;
+}
+
+void Run::writeCell(const CellSpec& cell, json content) {
+  const std::string id = cellId(cell, device_.info());
+  writeJsonFile(results_ / "cells" / (id + ".json"), content);
+  progress_.finish();
+}
+
+void Run::writeUnmeasured(const CellSpec& cell, const std::string& status,
+                          const std::string& reason) {
+  json content = header(cell);
+  content["status"] = status;
+  content["reason"] = reason;
+  (status == "failed" ? summary.failed : summary.skipped) += 1;
+  fmt::print(stderr, "{}: {}: {}\n", status, cell.label(), reason);
+  writeCell(cell, std::move(content));
+}
+
+void Run::writeMeasured(const CellSpec& cell, const Renderer& renderer, const Method& method,
+                        const Camera& camera, const Measurement& m,
+                        const std::optional<Image>& reference) {
+  const std::uint64_t seed = experiment_.measure.seed;
+  const Scene& scene = renderer.scene().scene();
+  json content = header(cell);
+  content["status"] = "ok";
+  content["scene"]["triangles"] = scene.triangles.size();
+  content["scene"]["transparent_triangles"] = renderer.scene().transparentCount();
+  json repairs = json::object();
+  for (const Repair& repair : scene.repairs) repairs[repair.what] = repair.count;
+  content["scene"]["repairs"] = repairs;
+  content["camera"] = describeCamera(camera);
+
+  json stageMedians = json::object(), stageStatistics = json::object(), stageSamples = json::object();
+  for (const auto& [name, series] : m.stages) {
+    stageStatistics[name] = describeSummary(series, seed);
+    stageMedians[name] = stageStatistics[name]["median"];
+    stageSamples[name] = {{"ms", series.ms}, {"block", series.block}};
+  }
+  const json frame = describeSummary(m.frame, seed);
+  content["gpu_ms"] = {{"frame", frame["median"]}, {"stages", stageMedians}};
+  content["stage_order"] = m.stageOrder;
+  content["statistics"] = {{"frame", frame}, {"stages", stageStatistics}};
+  content["samples"] = {
+      {"frame_ms", m.frame.ms}, {"block", m.frame.block}, {"stages", stageSamples}};
+  content["stop"] = {{"reason", m.stopReason},
+                     {"relative_spread", m.relativeSpread},
+                     {"blocks", m.blocks},
+                     {"seconds", m.seconds},
+                     {"rejected_samples", m.rejectedSamples}};
+  content["counters"] = m.counters;
+  content["memory_bytes"] = describeMemory(renderer, method);
+
+  const Image image = renderer.target().toImage(m.image);
+  content["image_hash"] = imageHash(m.image);
+  content["quality"] = nullptr;
+  if (reference) content["quality"] = describeQuality(image, *reference, experiment_.reference);
+  const std::string file = "images/" + content["id"].get<std::string>() + ".png";
+  writeImage(results_ / file, image);
+  content["image"] = {{"file", file}};
+  ++summary.done;
+  writeCell(cell, std::move(content));
+}
+
+/// The image that the group is judged by. Without one the cells are measured all the same, and say
+/// nothing about quality.
+std::optional<Image> Run::renderReference(Renderer& renderer, const Camera& camera) const {
+  if (experiment_.reference.empty()) return std::nullopt;
+  const MethodInfo& info = findMethod(experiment_.reference);
+  try {
+    const auto method = renderer.prepare(info, Parameters(info.parameters, {}, info.name));
+    renderer.render(*method, camera);
+    return renderer.target().toImage(renderer.target().readBytes(device_));
+  } catch (const DeviceError& error) {
+    fmt::print(stderr, "no reference image: {}\n", error.what());
+    return std::nullopt;
+  }
+}
+
+void Run::measureOn(const std::vector<CellSpec>& cells) {
+  const CellSpec& first = cells.front();
+  const Scene scene = loadScene(first.scene);
+  const Camera camera = findView(scene, first.view);
+  const GpuScene gpuScene(device_, scene);
+  const Target target(device_, first.width, first.height, first.format);
+  Renderer renderer(device_, gpuScene, target);
+  const auto reference = renderReference(renderer, camera);
+
+  std::vector<CellSpec> ready;
+  std::vector<std::unique_ptr<Method>> owned;
+  std::vector<Method*> prepared;
+  for (const CellSpec& cell : cells) {
+    const MethodInfo& info = findMethod(cell.method);
+    if (const auto missing = info.missing(device_.info()); !missing.empty()) {
+      writeUnmeasured(cell, "skipped",
+                      fmt::format("{} lacks {}", device_.info().name, fmt::join(missing, ", ")));
+      continue;
+    }
+    try {
+      owned.push_back(renderer.prepare(info, cell.parameters));
+      prepared.push_back(owned.back().get());
+      ready.push_back(cell);
+    } catch (const DeviceError& error) {
+      writeUnmeasured(cell, "failed", error.what());
+    }
+  }
+  measureInterleaved(renderer, camera, prepared, experiment_.measure,
+                     [&](std::size_t i, Measurement measurement) {
+                       if (!measurement.failure.empty())
+                         writeUnmeasured(ready[i], "failed", measurement.failure);
+                       else
+                         writeMeasured(ready[i], renderer, *prepared[i], camera, measurement,
+                                       reference);
+                     });
+}
+
+void Run::measureGroup(const std::vector<CellSpec>& cells) {
+  progress_.begin(cells.size() == 1 ? cells.front().label()
+                                    : fmt::format("{} (and {} against it)", cells.front().label(),
+                                                  cells.size() - 1));
+  // Whatever stops a whole group (a broken file, an unknown view, memory) is the reason of each of
+  // its cells that is not there yet, and the next group goes on.
+  auto failAll = [&](const std::string& reason) {
+    for (const CellSpec& cell : cells)
+      if (!fs::exists(results_ / "cells" / (cellId(cell, device_.info()) + ".json")))
+        writeUnmeasured(cell, "failed", reason);
+  };
+  try {
+    measureOn(cells);
+  } catch (const InputError& error) {
+    failAll(error.what());
+  } catch (const DeviceError& error) {
+    failAll(error.what());
+  }
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const fs::path probe = folder / ".writable";
+  if (error || !std::ofstream(probe))
+    fail<InputError>("{}: results cannot be written there{}", folder.string(),
+                     error ? ": " + error.message() : "");
+  fs::remove(probe, error);
+}
+
+}  // namespace
+
+RunSummary runExperiment(const Device& device, const Experiment& experiment,
+                         const std::vector<CellSpec>& cells, const fs::path& results) {
+  makeFolder(results / "cells");
+  makeFolder(results / "images");
+
+  RunSummary before;
+  std::vector<CellSpec> wanted;
+  for (const CellSpec& cell : cells) {
+    const fs::path path = results / "cells" / (cellId(cell, device.info()) + ".json");
+    bool present = false;
+    if (fs::exists(path)) try {
+        const json content = readJsonFile(path);
+        present = content.value("status", "") != "failed";
+        const std::string commit = content.at("provenance").value("commit", "");
+        if (present && commit != OITLAB_COMMIT) ++before.otherVersion;
+      } catch (const std::exception& error) {
+        fmt::print(stderr, "{}: measured again: {}\n", path.string(), error.what());
+      }
+    if (present)
+      ++before.present;
+    else
+      wanted.push_back(cell);
+    // A failed or damaged cell is tried again from nothing.
+    if (!present) {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+    }
+  }
+
+  Progress progress(wanted.size());
+  Run run(device, experiment, results, progress);
+  for (const auto& group : groupCells(wanted)) run.measureGroup(group);
+  run.summary.present = before.present;
+  run.summary.otherVersion = before.otherVersion;
+  return run.summary;
+}
+
+}  // namespace oitlab

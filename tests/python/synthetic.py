@@ -1,0 +1,127 @@
+"""Makes results folders that look like those of the C++ program. The same arguments give the same
+files.
+
+Run by hand to look at a report: python3 tests/python/synthetic.py FOLDER [METHODS] [SCENES]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import zlib
+from pathlib import Path
+
+import numpy
+from PIL import Image
+
+SCENES = ("boxes", "teapot", "hairball", "tree", "courtyard", "pipes", "sponza", "plants", "smoke",
+          "glassware", "city", "engine")
+# Method, parameters, frame time relative to blend, RMSE.
+METHODS = (
+    ("blend", {"order": "submission"}, 1.0, 0.081),
+    ("reference", {"order": "sorted"}, 3.1, 0.0),
+    ("wboit", {}, 1.003, 0.034),
+    ("lucid", {"tile": 8, "early_out": True}, 1.7, 0.0),
+    ("lucid", {"tile": 16, "early_out": True}, 1.55, 0.0),
+    ("moment", {"moments": 4, "precision": "half"}, 2.2, 0.012),
+)
+DEVICE = {"name": "Example GPU 4000", "type": "discrete", "driver": "exampledriver",
+          "driver_info": "550.1", "api_version": "1.3.230", "subgroup_size": 32,
+          "timestamp_period_ns": 1.0}
+LAVAPIPE = {**DEVICE, "name": "llvmpipe (LLVM 15.0.6, 256 bits)", "type": "cpu",
+            "driver": "llvmpipe", "driver_info": "Mesa 22.3.6 (LLVM 15.0.6)", "subgroup_size": 8}
+
+
+def quantiles(samples: list[float]) -> dict:
+    """The `statistics` object of a series of times in ms."""
+    at = lambda percent: float(numpy.percentile(samples, percent))  # noqa: E731
+    spread = 1.96 * float(numpy.std(samples)) / len(samples) ** 0.5
+    return {"count": len(samples), "median": at(50), "q1": at(25), "q3": at(75),
+            "mean": float(numpy.mean(samples)), "min": min(samples), "max": max(samples),
+            "p95": at(95), "ci95": [at(50) - spread, at(50) + spread]}
+
+
+def make_cell(scene: str = "boxes", method: str = "blend", parameters: dict | None = None,
+              frame_ms: float = 2.0, rmse: float | None = 0.0, size: tuple[int, int] = (64, 36),
+              blocks: int = 12, frames: int = 5, device: dict = DEVICE,
+              experiment: str = "quickstart", **changes) -> dict:
+    """An ok cell; `changes` replace whole top-level keys."""
+    parameters = parameters or {}
+    text = f"{scene}-{method}-{json.dumps(parameters)}-{size}-{device['name']}-{experiment}"
+    identity = f"{scene}-default-{size[0]}x{size[1]}-{method}-{zlib.crc32(text.encode()):08x}"
+    group = f"{zlib.crc32(f'{scene}-{size}-{device}'.encode()):08x}"
+    # What slows a block slows all methods of the group alike: that is why blocks are paired.
+    drift = numpy.random.default_rng(zlib.crc32(group.encode())).normal(1, 0.03, blocks)
+    own = numpy.random.default_rng(zlib.crc32(text.encode())).normal(1, 0.004, (blocks, frames))
+    times = (frame_ms * drift[:, None] * own).round(6)
+    samples, numbers = times.ravel().tolist(), numpy.repeat(range(blocks), frames).tolist()
+    triangles = 900 + zlib.crc32(scene.encode()) % 2_000_000
+    stages = {"opaque": frame_ms * 0.1, "capture": frame_ms * 0.6, "resolve": frame_ms * 0.35}
+    if method in ("blend", "wboit"):
+        stages = {"opaque": frame_ms * 0.1, "accumulate": frame_ms * 0.95}
+    cell = {
+        "schema": 1, "id": identity, "experiment": experiment, "status": "ok", "reason": "",
+        "group": group, "seed": 1,
+        "scene": {"name": scene, "source": scene, "triangles": triangles,
+                  "transparent_triangles": triangles, "opacity": None, "detail": 1.0,
+                  "content_hash": f"{zlib.crc32(scene.encode()):08x}"},
+        "view": "default", "size": list(size), "format": "rgba16f", "method": method,
+        "camera": {"eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "fov_y_degrees": 60,
+                   "near": 0.01},
+        "parameters": parameters, "device": device,
+        "gpu_ms": {"frame": float(numpy.median(samples)), "stages": stages},
+        "statistics": {"frame": quantiles(samples), "stages": {}},
+        "samples": {"frame_ms": samples, "block": numbers, "stages": {}},
+        "stop": {"reason": "spread", "relative_spread": 0.004, "blocks": blocks, "seconds": 3.2,
+                 "rejected_samples": 0},
+        "quality": None if rmse is None else {
+            "reference": "reference", "rmse": rmse, "max_error": rmse * 4,
+            "psnr": None if rmse == 0 else round(-20 * float(numpy.log10(rmse)), 3),
+            "pixels_off": min(1.0, rmse * 6)},
+        "counters": {"fragments": triangles * 7, "overflow": 0},
+        "memory_bytes": {"total": 3 * 2**20 + triangles, "buffers": {"fragment pool": triangles,
+                                                                     "colour": 3 * 2**20}},
+        "image": {"file": f"images/{identity}.png"}, "image_hash": f"{zlib.crc32(text.encode()):x}",
+        "provenance": {"commit": "abc1234", "build": "Release", "validation": False,
+                       "command": "oitlab run experiments/quickstart.toml",
+                       "date": "2026-11-21T22:40:00Z",
+                       "shaders": {f"{method}/{method}.frag": "11aa22bb"}},
+    }
+    return cell | changes
+
+
+def without_measurement(cell: dict, status: str, reason: str) -> dict:
+    """The same cell as the C++ program writes it when it failed or was skipped."""
+    kept = ("schema", "id", "experiment", "group", "seed", "view", "size", "format", "method",
+            "parameters", "device", "provenance")
+    scene = {key: cell["scene"][key] for key in ("name", "source", "opacity", "detail")}
+    return {key: cell[key] for key in kept} | {"status": status, "reason": reason, "scene": scene}
+
+
+def write_cell(folder: Path, cell: dict, image: bool = True) -> None:
+    (folder / "cells").mkdir(parents=True, exist_ok=True)
+    (folder / "cells" / f"{cell['id']}.json").write_text(json.dumps(cell), encoding="utf-8")
+    if image and cell.get("image"):
+        write_image(folder / cell["image"]["file"], *cell["size"], cell["image_hash"])
+
+
+def write_image(path: Path, width: int, height: int, seed: str = "") -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    y, x = numpy.mgrid[0:height, 0:width]
+    tint = zlib.crc32(seed.encode()) % 200
+    pixels = numpy.stack([x * 255 // width, y * 255 // height, numpy.full_like(x, tint)], axis=2)
+    Image.fromarray(pixels.astype(numpy.uint8)).save(path)
+
+
+def make_results(folder: Path, methods: int = 4, scenes: int = 3, device: dict = DEVICE,
+                 size: tuple[int, int] = (64, 36), **changes) -> Path:
+    """Scenes of very different cost, all with the same methods."""
+    for index, scene in enumerate(SCENES[:scenes]):
+        for method, parameters, factor, rmse in METHODS[:methods]:
+            write_cell(folder, make_cell(scene, method, parameters, (0.3 + 0.41 * index**2) * factor,
+                                         rmse, size, device=device, **changes))
+    return folder
+
+
+if __name__ == "__main__":
+    make_results(Path(sys.argv[1]), *(int(argument) for argument in sys.argv[2:]))

@@ -1,0 +1,210 @@
+#include "measure/statistics.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace oitlab {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double quantile(std::vector<double> sorted, double q) {
+  return quantileOfSorted(sorted, q);
+}
+
+/// All samples in one block.
+Summary summarizeOne(const std::vector<double>& samples) {
+  return summarize(samples, std::vector<std::uint32_t>(samples.size(), 0));
+}
+
+TEST(Quantile, MedianOfOddAndEvenCounts) {
+  EXPECT_EQ(quantile({7}, 0.5), 7);
+  EXPECT_EQ(quantile({1, 2, 10}, 0.5), 2);
+  EXPECT_EQ(quantile({1, 2, 4, 10}, 0.5), 3);
+}
+
+TEST(Quantile, IsType7) {
+  // (n - 1) q = 0.75: three quarters of the way from 1 to 2.
+  EXPECT_DOUBLE_EQ(quantile({1, 2, 4, 10}, 0.25), 1.75);
+  EXPECT_DOUBLE_EQ(quantile({1, 2, 4, 10}, 0.75), 5.5);
+  EXPECT_EQ(quantile({1, 2, 4, 10}, 0), 1);
+  EXPECT_EQ(quantile({1, 2, 4, 10}, 1), 10);
+}
+
+TEST(QuantileDeathTest, RefusesNonsense) {
+  EXPECT_DEATH(quantile({}, 0.5), "check failed");
+  EXPECT_DEATH(quantile({1}, 1.5), "check failed");
+  EXPECT_DEATH(quantile({1}, kNan), "check failed");
+}
+
+TEST(Summarize, ValuesWorkedOutByHand) {
+  // 1 ... 101, shuffled: the quantile q is 1 + 100 q.
+  std::vector<double> samples(101);
+  std::iota(samples.begin(), samples.end(), 1.0);
+  std::shuffle(samples.begin(), samples.end(), std::mt19937(1));
+  const Summary summary = summarizeOne(samples);
+  EXPECT_EQ(summary.count, 101U);
+  EXPECT_EQ(summary.min, 1);
+  EXPECT_EQ(summary.q1, 26);
+  EXPECT_EQ(summary.median, 51);
+  EXPECT_EQ(summary.q3, 76);
+  EXPECT_EQ(summary.p95, 96);  // and not the median again
+  EXPECT_EQ(summary.max, 101);
+  EXPECT_EQ(summary.mean, 51);
+  EXPECT_LT(summary.ciLow, 51);
+  EXPECT_GT(summary.ciHigh, 51);
+}
+
+TEST(Summarize, NothingGivesZeros) {
+  const Summary summary = summarizeOne({});
+  EXPECT_EQ(summary.count, 0U);
+  EXPECT_EQ(summary.median, 0);
+  EXPECT_EQ(summary.ciHigh, 0);
+}
+
+TEST(Summarize, OneSampleIsItsOwnInterval) {
+  const Summary summary = summarizeOne({3});
+  EXPECT_EQ(summary.p95, 3);
+  EXPECT_EQ(summary.ciLow, 3);
+  EXPECT_EQ(summary.ciHigh, 3);
+}
+
+TEST(Summarize, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
+  const Summary summary = summarizeOne({kNan, 2, kInfinity, 1, 3, -kInfinity});
+  EXPECT_EQ(summary.count, 3U);
+  EXPECT_EQ(summary.notFinite, 3U);
+  EXPECT_EQ(summary.median, 2);
+  EXPECT_EQ(summary.max, 3);
+  EXPECT_EQ(summarizeOne({kNan}).count, 0U);
+  EXPECT_EQ(summarizeOne({kNan}).notFinite, 1U);
+}
+
+TEST(Summarize, IsDeterministicFromTheSeed) {
+  std::vector<double> samples(60);
+  std::vector<std::uint32_t> blocks(60);
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < 60; ++i) {
+    samples[i] = double(random() % 1000);
+    blocks[i] = std::uint32_t(i / 5);
+  }
+  const Summary a = summarize(samples, blocks, 7);
+  const Summary b = summarize(samples, blocks, 7);
+  const Summary c = summarize(samples, blocks, 8);
+  EXPECT_EQ(a.ciLow, b.ciLow);
+  EXPECT_EQ(a.ciHigh, b.ciHigh);
+  EXPECT_TRUE(a.ciLow != c.ciLow || a.ciHigh != c.ciHigh);
+}
+
+TEST(Summarize, BlocksAreDrawnWhole) {
+  // Two blocks, however numbered: a draw is {A,A}, {A,B} or {B,B}, with medians 1, 1.5 and 2 since
+  // the blocks are constant. Draws of single frames would hardly ever leave 1.5.
+  std::vector<double> samples;
+  std::vector<std::uint32_t> blocks;
+  for (int i = 0; i < 50; ++i) {
+    samples.insert(samples.end(), {1.0, 2.0});
+    blocks.insert(blocks.end(), {900U, 7U});
+  }
+  const Summary summary = summarize(samples, blocks);
+  EXPECT_EQ(summary.median, 1.5);
+  EXPECT_EQ(summary.ciLow, 1);
+  EXPECT_EQ(summary.ciHigh, 2);
+}
+
+TEST(Summarize, IntervalsCoverTheTruth) {
+  // Frames of a block share most of their noise, as they do when a clock rate drifts. The interval
+  // shall hold the true median (10) about 95 times in 100 (somewhat less with 20 blocks); one that
+  // takes the frames as independent does so little more than half of the time.
+  std::mt19937_64 random(42);
+  std::normal_distribution<double> normal;
+  constexpr int kTrials = 200;
+  int covered = 0;
+  int coveredByFrames = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> samples;
+    std::vector<std::uint32_t> blocks;
+    for (std::uint32_t block = 0; block < 20; ++block) {
+      const double shared = 10 + normal(random);
+      for (int frame = 0; frame < 4; ++frame) {
+        samples.push_back(shared + 0.2 * normal(random));
+        blocks.push_back(block);
+      }
+    }
+    const Summary byBlocks = summarize(samples, blocks, 1, 200);
+    covered += byBlocks.ciLow <= 10 && 10 <= byBlocks.ciHigh;
+    const std::vector<std::uint32_t> oneBlock(samples.size(), 0);
+    const Summary byFrames = summarize(samples, oneBlock, 1, 200);
+    coveredByFrames += byFrames.ciLow <= 10 && 10 <= byFrames.ciHigh;
+  }
+  EXPECT_GE(covered, kTrials * 86 / 100);
+  EXPECT_LE(covered, kTrials * 99 / 100);
+  EXPECT_LE(coveredByFrames, kTrials * 75 / 100);
+}
+
+StopRule ruleOf(double seconds, const std::vector<double>& medians, StopRule::Limits limits = {}) {
+  StopRule rule(limits);
+  for (const double median : medians) rule.addBlock(median, seconds);
+  return rule;
+}
+
+TEST(StopRule, SpreadIsInterquartileRangeOverMedian) {
+  // Quartiles 1.75 and 5.5, median 3.
+  EXPECT_DOUBLE_EQ(ruleOf(0, {4, 1, 10, 2}).relativeSpread(), 1.25);
+  EXPECT_EQ(ruleOf(0, {}).relativeSpread(), kInfinity);
+  EXPECT_EQ(ruleOf(0, {0, 0}).relativeSpread(), kInfinity);
+}
+
+TEST(StopRule, StopsAtASmallSpreadButNotEarly) {
+  EXPECT_EQ(ruleOf(0, {}).stopReason(), "");
+  EXPECT_EQ(ruleOf(0, {10, 10, 10, 10}).stopReason(), "");
+  EXPECT_EQ(ruleOf(0, {10, 10, 10, 10, 10}).stopReason(), "spread");
+  // Quartiles 9.99 and 10.01 give 0.2%; 9.9 and 10.1 give 2%.
+  EXPECT_EQ(ruleOf(0, {9, 9.99, 10, 10.01, 11}).stopReason(), "spread");
+  EXPECT_EQ(ruleOf(0, {9, 9.9, 10, 10.1, 11}).stopReason(), "");
+}
+
+TEST(StopRule, StopsWhenTheMedianStandsStill) {
+  // The running medians are 10, 9.5, 10, 9.5, ...: they never stand still.
+  EXPECT_EQ(ruleOf(0, {10, 9, 11, 8, 12, 7, 13, 6}).stopReason(), "");
+  // 10, 10.5, 10, 10, 10, 10, 10, 10: still over six values, that is over five blocks, after eight.
+  const std::vector<double> noise = {10, 11, 9, 10, 8, 10, 12, 10};
+  StopRule::Limits limits;
+  limits.relativeSpread = 0.01;
+  for (std::size_t blocks = 0; blocks < noise.size(); ++blocks)
+    EXPECT_EQ(
+        ruleOf(0, {noise.begin(), noise.begin() + std::ptrdiff_t(blocks)}, limits).stopReason(), "")
+        << blocks;
+  EXPECT_EQ(ruleOf(0, noise, limits).stopReason(), "settled");
+}
+
+TEST(StopRule, StopsAtTheTimeLimitFromTheFirstBlock) {
+  EXPECT_EQ(ruleOf(11, {10}).stopReason(), "time_limit");
+  EXPECT_EQ(ruleOf(2.5, {10, 20, 10}).stopReason(), "");
+  EXPECT_EQ(ruleOf(2.5, {10, 20, 10, 30}).stopReason(), "time_limit");
+}
+
+TEST(StopRule, SaysThatTheSpreadWasReachedEvenWhenTimeIsOutToo) {
+  EXPECT_EQ(ruleOf(60, {10, 10, 10, 10, 10}).stopReason(), "spread");
+}
+
+TEST(StopRule, StopsAtTheMostBlocks) {
+  StopRule::Limits limits;
+  limits.maxBlocks = 4;
+  EXPECT_EQ(ruleOf(0, {10, 9, 11}, limits).stopReason(), "");
+  EXPECT_EQ(ruleOf(0, {10, 9, 11, 8}, limits).stopReason(), "max_blocks");
+}
+
+TEST(StopRule, BlocksWithoutAFrameNeitherPassNorHang) {
+  EXPECT_EQ(ruleOf(0, {kNan, kNan, kNan, kNan, kNan, kNan}).stopReason(), "");
+  EXPECT_EQ(ruleOf(5, {kNan, kNan}).stopReason(), "time_limit");
+  EXPECT_EQ(ruleOf(0, std::vector<double>(200, kNan)).stopReason(), "max_blocks");
+  EXPECT_EQ(ruleOf(0, {10, kNan, 10, 10, 10}).stopReason(), "");
+  EXPECT_EQ(ruleOf(0, {10, kNan, 10, 10, 10, 10}).stopReason(), "spread");
+}
+
+}  // namespace
+}  // namespace oitlab
