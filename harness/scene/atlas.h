@@ -50,8 +50,7 @@ struct SceneAtlases {
 /// there are too many for that.
 SceneAtlases buildAtlases(const Scene& scene, int maxSide = 16384);
 
-/// A level as RGBA8 (colours still sRGB-encoded), `alpha` as Atlas::alpha: for devices without BC
-/// formats, and for tests.
-std::vector<std::uint8_t> decodeLevel(const Atlas::Level& level, bool alpha);
+/// A level as RGBA8 (colours still sRGB-encoded): for devices without BC formats, and for tests.
+std::vector<std::uint8_t> decodeAtlasLevel(const Atlas& atlas, std::size_t level);
 
 }  // namespace oitlab

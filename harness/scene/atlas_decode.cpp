@@ -3,6 +3,7 @@
 #include <array>
 
 #include "scene/atlas.h"
+#include "util/check.h"
 
 namespace oitlab {
 namespace {
@@ -52,18 +53,20 @@ void decodeAlpha(const std::uint8_t* block, std::uint8_t (&texels)[16][4]) {
 
 }  // namespace
 
-std::vector<std::uint8_t> decodeLevel(const Atlas::Level& level, bool alpha) {
+std::vector<std::uint8_t> decodeAtlasLevel(const Atlas& atlas, std::size_t index) {
+  OITLAB_CHECK_OP(index, <, atlas.levels.size());
+  const Atlas::Level& level = atlas.levels[index];
   const auto width = std::size_t(level.width), height = std::size_t(level.height);
   std::vector<std::uint8_t> rgba(width * height * 4);
   const std::uint8_t* block = level.blocks.data();
   for (std::size_t y = 0; y < height; y += 4)
     for (std::size_t x = 0; x < width; x += 4) {
       std::uint8_t texels[16][4];
-      decodeColor(block + (alpha ? 8 : 0), !alpha, texels);
-      if (alpha) decodeAlpha(block, texels);
+      decodeColor(block + (atlas.alpha ? 8 : 0), !atlas.alpha, texels);
+      if (atlas.alpha) decodeAlpha(block, texels);
       for (std::size_t row = 0; row < 4; ++row)
         std::copy_n(texels[4 * row], 16, &rgba[((y + row) * width + x) * 4]);
-      block += alpha ? 16 : 8;
+      block += atlas.alpha ? 16 : 8;
     }
   return rgba;
 }
