@@ -150,6 +150,15 @@ TEST(Atlas, CompressionKeepsAGradientWithAlpha) {
     }
 }
 
+TEST(Atlas, CompressionKeepsAnOpaqueGradient) {
+  const auto paint = [](int x, int y) { return Rgba{2 * x, x + y, 2 * x, 255}; };
+  const SceneAtlases atlases = buildAtlases(sceneOf({texture(128, 128, paint)}));
+  const Decoded decoded(atlases.opaque, atlases.ofMaterial[0], 0);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x)
+      ASSERT_LE(difference(decoded.at(x, y), paint(x, y)), 8) << x << " " << y;
+}
+
 TEST(Atlas, MipsAverageInLinearLight) {
   const auto chess = [](int x, int y) {
     return (x + y) % 2 ? Rgba{255, 255, 255, 255} : Rgba{0, 0, 0, 255};

@@ -138,13 +138,13 @@ TEST_F(Gltf, NodesAreVisitedDepthFirstWithTheirTransforms) {
                               {"rotation", {0, 0, half, half}},  // x to y
                               {"scale", {2, 1, 1}}},
                              false);
-  glb.node({{"children", {child}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 7, 1}}});
+  glb.node({{"children", {child}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 7, 1}}});
   glb.node({{"mesh", mesh}});
   const Scene scene = load(glb);
   ASSERT_EQ(scene.triangles.size(), 2u);
-  EXPECT_LT(glm::distance(at(scene, 0, 0), {1, 0, 7}), 1e-6f);
-  EXPECT_LT(glm::distance(at(scene, 0, 1), {1, 2, 7}), 1e-6f);
-  EXPECT_LT(glm::distance(at(scene, 0, 2), {0, 0, 7}), 1e-6f);
+  EXPECT_LT(glm::distance(at(scene, 0, 0), {6, 0, 7}), 1e-6f);
+  EXPECT_LT(glm::distance(at(scene, 0, 1), {6, 2, 7}), 1e-6f);
+  EXPECT_LT(glm::distance(at(scene, 0, 2), {5, 0, 7}), 1e-6f);
   EXPECT_EQ(at(scene, 1, 1), glm::vec3(1, 0, 0));
 }
 
