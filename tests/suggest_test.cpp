@@ -38,7 +38,7 @@ TEST(DidYouMean, CompletesAnAbbreviation) {
 }
 
 TEST(DidYouMean, PrefersASlipToAnAbbreviation) {
-  EXPECT_EQ(didYouMean("boxe", {"boxelder", "boxes"}), " (did you mean 'boxes'?)");
+  EXPECT_EQ(didYouMean("pipe", {"pipes_of_steel", "pipa"}), " (did you mean 'pipa'?)");
 }
 
 TEST(DidYouMean, StaysSilentWhenNothingIsClose) {

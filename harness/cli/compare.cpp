@@ -22,7 +22,8 @@ int compare(const Options& options) {
     // By default the largest error is the brightest colour; equal images have a scale all the same.
     constexpr float least = 1.0f / 255.0f;
     float scale = options.mapScale;
-    if (scale == 0.0f) scale = std::isfinite(c.maxError) ? std::max(float(c.maxError), least) : 1.0f;
+    if (scale == 0.0f)
+      scale = std::isfinite(c.maxError) ? std::max(float(c.maxError), least) : 1.0f;
     writeImage(options.map, errorMap(image, reference, scale));
   }
   if (options.json) {
@@ -52,8 +53,11 @@ void addCompare(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("compare", "How far image A is from image B");
   verb->add_option("A", options->image, "Image, .png or .exr")->required();
   verb->add_option("B", options->reference, "Reference image of the same size")->required();
-  verb->add_option("--map", options->map, "Write a picture of the error here (.png)")->type_name("FILE");
-  verb->add_option("--map-scale", options->mapScale, "Error of the brightest colour (default: the largest)")->check(CLI::PositiveNumber);
+  verb->add_option("--map", options->map, "Write a picture of the error here (.png)")
+      ->type_name("FILE");
+  verb->add_option("--map-scale", options->mapScale,
+                   "Error of the brightest colour (default: the largest)")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] { action = [=] { return compare(*options); }; });
 }

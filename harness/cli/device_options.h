@@ -8,7 +8,8 @@ namespace oitlab {
 
 /// --device and --validation, alike for every verb that opens a device.
 inline void addDeviceOptions(CLI::App& verb, Device::Options& options) {
-  verb.add_option("--device", options.index, "Device number as `oitlab info` lists them (default: a GPU if there is one)")
+  verb.add_option("--device", options.index,
+                  "Device number as `oitlab info` lists them (default: a GPU if there is one)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
   verb.add_flag("--validation", options.validation,

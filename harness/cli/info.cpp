@@ -65,7 +65,8 @@ int info(const Options& options) {
 
 void addInfo(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand("info", "Devices, their limits, and what each method lacks there");
+  CLI::App* verb =
+      program.add_subcommand("info", "Devices, their limits, and what each method lacks there");
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] { action = [=] { return info(*options); }; });
 }

@@ -64,4 +64,6 @@ int runProgram(int argc, char** argv) {
 }  // namespace
 }  // namespace oitlab
 
-int main(int argc, char** argv) { return oitlab::runProgram(argc, argv); }
+int main(int argc, char** argv) {
+  return oitlab::runProgram(argc, argv);
+}

@@ -80,7 +80,11 @@ int render(const Options& options) {
   for (const auto& [name, ms] : labelled.stageMs) stages[name] = ms;
   const nlohmann::json result = {
       {"device", describeDevice(device.info())},
-      {"scene", {{"name", scene.name}, {"source", options.scene}, {"triangles", scene.triangles.size()}, {"transparent_triangles", gpuScene.transparentCount()}}},
+      {"scene",
+       {{"name", scene.name},
+        {"source", options.scene},
+        {"triangles", scene.triangles.size()},
+        {"transparent_triangles", gpuScene.transparentCount()}}},
       {"view", options.view},
       {"camera", describeCamera(camera)},
       {"size", {size->first, size->second}},
@@ -117,16 +121,32 @@ int render(const Options& options) {
 void addRender(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = program.add_subcommand("render", "Render one image and say what it took");
-  verb->add_option("--scene", options->scene, "A name of `oitlab list scenes`, or a .glb/.gltf file")->required();
+  verb->add_option("--scene", options->scene,
+                   "A name of `oitlab list scenes`, or a .glb/.gltf file")
+      ->required();
   verb->add_option("--method", options->method, "A name of `oitlab list methods`")->required();
-  verb->add_option("--set", options->settings, "A parameter of the method: name=value (repeatable)")->type_name("NAME=VALUE")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--size", options->size, "Width x height in pixels", true)->type_name("WxH");
-  verb->add_option("--view", options->view, "A named view of the scene, orbit:YAW,PITCH,DISTANCE[,FOV] (radians; FOV in degrees) or look:EX,EY,EZ,TX,TY,TZ[,FOV]", true);
+  verb->add_option("--set", options->settings, "A parameter of the method: name=value (repeatable)")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--size", options->size, "Width x height in pixels")
+      ->capture_default_str()
+      ->type_name("WxH");
+  verb->add_option("--view", options->view,
+                   "A named view of the scene, orbit:YAW,PITCH,DISTANCE[,FOV] (radians; FOV in "
+                   "degrees) or look:EX,EY,EZ,TX,TY,TZ[,FOV]")
+      ->capture_default_str();
   verb->add_option("--opacity", options->opacity, "Give every material this opacity, in (0, 1]");
-  verb->add_option("--detail", options->detail, "Generated scenes: share of the triangles, in (0, 1]", true);
-  verb->add_option("--format", options->format, "Of the target: rgba16f, rgba8 or rgba32f, linear", true);
-  verb->add_option("--shuffle", options->shuffle, "Submit the triangles in a random order with this seed");
-  verb->add_option("--out", options->out, "Image file, .exr (linear) or .png (default: SCENE-METHOD.png, or none with --json)");
+  verb->add_option("--detail", options->detail,
+                   "Generated scenes: share of the triangles, in (0, 1]")
+      ->capture_default_str();
+  verb->add_option("--format", options->format, "Of the target: rgba16f, rgba8 or rgba32f, linear")
+      ->capture_default_str();
+  verb->add_option("--shuffle", options->shuffle,
+                   "Submit the triangles in a random order with this seed");
+  verb->add_option(
+      "--out", options->out,
+      "Image file, .exr (linear) or .png (default: SCENE-METHOD.png, or none with --json)");
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return render(*options); }; });

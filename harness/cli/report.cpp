@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,8 +34,10 @@ int runProgram(const std::vector<std::string>& arguments, bool quiet) {
 /// user's own without matplotlib, although the system's has it.
 std::string findPython() {
   std::vector<std::string> candidates;
-  if (const char* given = std::getenv("OITLAB_PYTHON"); given && *given) candidates = {given};
-  else candidates = {"python3", "/usr/bin/python3", "python"};
+  if (const char* given = std::getenv("OITLAB_PYTHON"); given && *given)
+    candidates = {given};
+  else
+    candidates = {"python3", "/usr/bin/python3", "python"};
   for (const std::string& python : candidates)
     if (runProgram({python, "-c", "import matplotlib, pandas, jinja2"}, true) == 0) {
       if (python != candidates.front())
@@ -50,8 +53,8 @@ std::string findPython() {
 
 int report(const std::string& folder) {
   if (!std::filesystem::is_directory(folder))
-    fail<InputError>("{}: no such results folder; `oitlab run experiments/quickstart.toml` makes one",
-                     folder);
+    fail<InputError>(
+        "{}: no such results folder; `oitlab run experiments/quickstart.toml` makes one", folder);
   const std::string python = findPython();
   std::string path = (dataRoot() / "analysis").string();
   if (const char* before = std::getenv("PYTHONPATH"); before && *before)
@@ -64,8 +67,8 @@ int report(const std::string& folder) {
 
 void addReport(CLI::App& program, Action& action) {
   auto folder = std::make_shared<std::string>();
-  CLI::App* verb = program.add_subcommand(
-      "report", "Table, plots, HTML and Markdown of a results folder");
+  CLI::App* verb =
+      program.add_subcommand("report", "Table, plots, HTML and Markdown of a results folder");
   verb->add_option("results", *folder, "The folder that `oitlab run` wrote")->required();
   verb->callback([=, &action] { action = [=] { return report(*folder); }; });
 }

@@ -1,6 +1,6 @@
+#include "experiment/run.h"
 #include "cli/commands.h"
 #include "cli/device_options.h"
-#include "experiment/run.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -25,7 +25,8 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
     present += there;
     fmt::print("{}  {}\n", there ? "there  " : "missing", cell.label());
   }
-  const double most = experiment.measure.stop.timeLimitSeconds * 1.3 * double(cells.size() - present);
+  const double most =
+      experiment.measure.stop.timeLimitSeconds * 1.3 * double(cells.size() - present);
   fmt::print(stderr, "{} cells on {}, {} there already, {} to measure: about {:.0f} s at most\n",
              cells.size(), devices[std::size_t(index)].name, present, cells.size() - present, most);
   return exitDone;
@@ -33,9 +34,9 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
 
 int run(const Options& options) {
   const Experiment experiment = readExperiment(options.file);
-  const std::filesystem::path results =
-      options.results.empty() ? std::filesystem::path("results") / experiment.name
-                              : std::filesystem::path(options.results);
+  const std::filesystem::path results = options.results.empty()
+                                            ? std::filesystem::path("results") / experiment.name
+                                            : std::filesystem::path(options.results);
   const auto cells = shardCells(experiment.cells, parseShard(options.shard));
   for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
   if (options.dryRun) return dryRun(experiment, cells, results, options);
@@ -43,10 +44,13 @@ int run(const Options& options) {
   const Device device(options.device);
   fmt::print(stderr, "{}: {} cells on {}\n", experiment.title, cells.size(), device.info().name);
   const RunSummary summary = runExperiment(device, experiment, cells, results);
-  fmt::print(stderr, "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
+  fmt::print(stderr,
+             "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
              summary.done, summary.present, summary.failed, summary.skipped, results.string());
   if (summary.otherVersion > 0)
-    fmt::print(stderr, "{} of the cells there before were made by another commit of oitlab; remove {} to measure all again\n",
+    fmt::print(stderr,
+               "{} of the cells there before were made by another commit of oitlab; remove {} to "
+               "measure all again\n",
                summary.otherVersion, (results / "cells").string());
   return summary.failed > 0 ? exitSomeFailed : exitDone;
 }
@@ -57,9 +61,14 @@ void addRun(CLI::App& program, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = program.add_subcommand(
       "run", "Run an experiment: measures the cells that the results folder does not hold yet");
-  verb->add_option("file", options->file, "The experiment, a .toml file (docs/experiments.md)")->required();
-  verb->add_option("--results", options->results, "Results folder (default: results/NAME)")->type_name("DIR");
-  verb->add_option("--shard", options->shard, "Only the i-th of n shares; several may share a folder", true)->type_name("I/N");
+  verb->add_option("file", options->file, "The experiment, a .toml file (docs/experiments.md)")
+      ->required();
+  verb->add_option("--results", options->results, "Results folder (default: results/NAME)")
+      ->type_name("DIR");
+  verb->add_option("--shard", options->shard,
+                   "Only the i-th of n shares; several may share a folder")
+      ->capture_default_str()
+      ->type_name("I/N");
   verb->add_flag("--dry-run", options->dryRun, "List the cells and measure nothing");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return run(*options); }; });

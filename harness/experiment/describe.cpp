@@ -21,7 +21,9 @@ std::string utcNow() {
   return text;
 }
 
-nlohmann::json vector3(glm::vec3 v) { return {v.x, v.y, v.z}; }
+nlohmann::json vector3(glm::vec3 v) {
+  return {v.x, v.y, v.z};
+}
 
 }  // namespace
 
@@ -69,12 +71,9 @@ nlohmann::json describeProvenance(const Device& device, const std::string& metho
   nlohmann::json shaders = nlohmann::json::object();
   for (const auto& [path, hash] : device.shaders().hashes())
     if (path.starts_with("common/") || path.starts_with(method + "/")) shaders[path] = hash;
-  return {{"commit", OITLAB_COMMIT},
-          {"build", OITLAB_BUILD_TYPE},
-          {"validation", device.validation()},
-          {"command", commandLine()},
-          {"date", utcNow()},
-          {"shaders", shaders}};
+  return {
+      {"commit", OITLAB_COMMIT},  {"build", OITLAB_BUILD_TYPE}, {"validation", device.validation()},
+      {"command", commandLine()}, {"date", utcNow()},           {"shaders", shaders}};
 }
 
 nlohmann::json describeMethod(const MethodInfo& info) {
@@ -93,12 +92,8 @@ nlohmann::json describeMethod(const MethodInfo& info) {
     }
     parameters.push_back(entry);
   }
-  return {{"name", info.name},
-          {"summary", info.summary},
-          {"source", info.source},
-          {"exact", info.exact},
-          {"features", info.features},
-          {"parameters", parameters}};
+  return {{"name", info.name},   {"summary", info.summary},   {"source", info.source},
+          {"exact", info.exact}, {"features", info.features}, {"parameters", parameters}};
 }
 
 }  // namespace oitlab

@@ -18,7 +18,8 @@ struct MethodChoice {
   Parameters parameters;
 };
 
-/// What one table of the file spans: the top level, or a [[sweep]] that inherits what it leaves out.
+/// What one table of the file spans: the top level, or a [[sweep]] that inherits what it leaves
+/// out.
 struct Axes {
   std::vector<SceneChoice> scenes;
   std::vector<std::string> views{"default"};
@@ -155,7 +156,7 @@ void addProduct(const Axes& axes, std::set<std::string>& known, std::vector<Cell
     for (const std::string& view : scene.views.empty() ? axes.views : scene.views)
       for (const auto& [width, height] : axes.sizes)
         for (const MethodChoice& method : axes.methods) {
-          CellSpec cell{scene.spec, view, width, height, axes.format, method.name,
+          CellSpec cell{scene.spec,       view, width, height, axes.format, method.name,
                         method.parameters};
           if (known.insert(cell.identity().dump()).second) cells.push_back(std::move(cell));
         }

@@ -29,13 +29,14 @@ struct Experiment {
   std::string title;
   std::string reference = "reference";  ///< method that images are scored against; "" for none
   MeasureSettings measure;
-  std::vector<CellSpec> cells;      ///< without repetitions, in the order of the file
-  std::vector<std::string> notes;  ///< what was left out and why: optional scenes that are not there
+  std::vector<CellSpec> cells;  ///< without repetitions, in the order of the file
+  std::vector<std::string>
+      notes;  ///< what was left out and why: optional scenes that are not there
 };
 
-/// Reads and checks an experiment. Scene paths are relative to the file. Throws InputError that names
-/// file, line and key: syntax, unknown keys (with a suggestion), unknown methods or parameters,
-/// values of the wrong type or out of range.
+/// Reads and checks an experiment. Scene paths are relative to the file. Throws InputError that
+/// names file, line and key: syntax, unknown keys (with a suggestion), unknown methods or
+/// parameters, values of the wrong type or out of range.
 Experiment readExperiment(const std::filesystem::path& path);
 
 }  // namespace oitlab

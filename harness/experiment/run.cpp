@@ -16,8 +16,9 @@ using nlohmann::json;
 
 json describeSummary(const Series& series, std::uint64_t seed) {
   const Summary s = summarize(series.ms, series.block, seed);
-  return {{"count", s.count}, {"median", s.median}, {"q1", s.q1},   {"q3", s.q3},   {"mean", s.mean},
-          {"min", s.min},     {"max", s.max},       {"p95", s.p95}, {"ci95", {s.ciLow, s.ciHigh}}};
+  return {{"count", s.count}, {"median", s.median}, {"q1", s.q1},
+          {"q3", s.q3},       {"mean", s.mean},     {"min", s.min},
+          {"max", s.max},     {"p95", s.p95},       {"ci95", {s.ciLow, s.ciHigh}}};
 }
 
 json describeQuality(const Image& image, const Image& reference, const std::string& name) {
@@ -33,7 +34,10 @@ json describeQuality(const Image& image, const Image& reference, const std::stri
 class Run {
  public:
   Run(const Device& device, const Experiment& experiment, fs::path results, Progress& progress)
-      : device_(device), experiment_(experiment), results_(std::move(results)), progress_(progress) {}
+      : device_(device),
+        experiment_(experiment),
+        results_(std::move(results)),
+        progress_(progress) {}
 
   void measureGroup(const std::vector<CellSpec>& cells);
 
@@ -105,7 +109,8 @@ void Run::writeMeasured(const CellSpec& cell, const Renderer& renderer, const Me
   content["scene"]["repairs"] = repairs;
   content["camera"] = describeCamera(camera);
 
-  json stageMedians = json::object(), stageStatistics = json::object(), stageSamples = json::object();
+  json stageMedians = json::object(), stageStatistics = json::object(),
+       stageSamples = json::object();
   for (const auto& [name, series] : m.stages) {
     stageStatistics[name] = describeSummary(series, seed);
     stageMedians[name] = stageStatistics[name]["median"];
@@ -178,14 +183,13 @@ void Run::measureOn(const std::vector<CellSpec>& cells) {
       writeUnmeasured(cell, "failed", error.what());
     }
   }
-  measureInterleaved(renderer, camera, prepared, experiment_.measure,
-                     [&](std::size_t i, Measurement measurement) {
-                       if (!measurement.failure.empty())
-                         writeUnmeasured(ready[i], "failed", measurement.failure);
-                       else
-                         writeMeasured(ready[i], renderer, *prepared[i], camera, measurement,
-                                       reference);
-                     });
+  measureInterleaved(
+      renderer, camera, prepared, experiment_.measure, [&](std::size_t i, Measurement measurement) {
+        if (!measurement.failure.empty())
+          writeUnmeasured(ready[i], "failed", measurement.failure);
+        else
+          writeMeasured(ready[i], renderer, *prepared[i], camera, measurement, reference);
+      });
 }
 
 void Run::measureGroup(const std::vector<CellSpec>& cells) {

@@ -28,7 +28,7 @@ std::string cellId(const CellSpec& cell, const DeviceInfo& device);
 
 struct RunSummary {
   std::size_t done = 0, failed = 0, skipped = 0;
-  std::size_t present = 0;        ///< were there before
+  std::size_t present = 0;       ///< were there before
   std::size_t otherVersion = 0;  ///< of those, made by another commit of oitlab
 };
 

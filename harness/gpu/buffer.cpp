@@ -82,7 +82,8 @@ Buffer uploadBuffer(const Device& device, MemoryLedger& ledger, const std::strin
   const Buffer staging(device, unlisted, "staging",
                        std::min<std::uint64_t>(data.size(), stagingBytes), BufferKind::upload);
   for (std::uint64_t done = 0; done < data.size(); done += stagingBytes) {
-    const auto piece = data.subspan(done, std::min<std::uint64_t>(stagingBytes, data.size() - done));
+    const auto piece =
+        data.subspan(done, std::min<std::uint64_t>(stagingBytes, data.size() - done));
     std::memcpy(staging.mapped<std::byte>().data(), piece.data(), piece.size());
     device.runOnce([&](const Commands& commands) {
       commands.copyBuffer(staging.vk(), buffer.vk(), vk::BufferCopy(0, done, piece.size()));

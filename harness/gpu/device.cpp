@@ -51,9 +51,10 @@ vk::raii::Instance openInstance(const vk::raii::Context& context, bool validatio
   try {
     return vk::raii::Instance(context, info);
   } catch (const vk::SystemError& error) {
-    fail<DeviceError>("no Vulkan instance: {}; is a driver installed (mesa-vulkan-drivers runs on "
-                      "any CPU)?",
-                      error.what());
+    fail<DeviceError>(
+        "no Vulkan instance: {}; is a driver installed (mesa-vulkan-drivers runs on "
+        "any CPU)?",
+        error.what());
   }
 }
 
@@ -91,7 +92,8 @@ std::vector<DeviceInfo> Device::listDevices() {
   const vk::raii::Context context = openLoader();
   const vk::raii::Instance instance = openInstance(context, false);
   std::vector<DeviceInfo> devices;
-  for (const auto& physical : physicalDevices(instance)) devices.push_back(describeDevice(physical));
+  for (const auto& physical : physicalDevices(instance))
+    devices.push_back(describeDevice(physical));
   return devices;
 }
 
@@ -124,8 +126,7 @@ Device::Device(const Options& options)
     vk::DebugUtilsMessengerCreateInfoEXT info;
     info.messageSeverity = Severity::eWarning | Severity::eError;
     info.messageType = Type::eGeneral | Type::eValidation | Type::ePerformance;
-    info.pfnUserCallback =
-        reinterpret_cast<decltype(info.pfnUserCallback)>(&MessageLog::receive);
+    info.pfnUserCallback = reinterpret_cast<decltype(info.pfnUserCallback)>(&MessageLog::receive);
     info.pUserData = log_.get();
     messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, info);
   }
@@ -193,7 +194,8 @@ Device::Device(const Options& options)
       vk::DescriptorSetLayoutBinding(2, Type::eStorageImage, 1, all),          // colour target
       vk::DescriptorSetLayoutBinding(3, Type::eCombinedImageSampler, 1, all),  // opaque depth
   };
-  setLayout_ = vk::raii::DescriptorSetLayout(device_, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+  setLayout_ =
+      vk::raii::DescriptorSetLayout(device_, vk::DescriptorSetLayoutCreateInfo({}, bindings));
   const vk::PushConstantRange push(all, 0, pushConstantBytes);
   pipelineLayout_ =
       vk::raii::PipelineLayout(device_, vk::PipelineLayoutCreateInfo({}, *setLayout_, push));

@@ -13,8 +13,8 @@ namespace oitlab {
 
 class ShaderLibrary;
 
-/// A command buffer that brings its own function table, so that the program runs (and explains itself)
-/// on a machine without a Vulkan loader.
+/// A command buffer that brings its own function table, so that the program runs (and explains
+/// itself) on a machine without a Vulkan loader.
 using Commands = vk::raii::CommandBuffer;
 
 /// What a device can do, as far as oitlab asks. Everything beyond the baseline (see
@@ -30,12 +30,12 @@ struct DeviceInfo {
   std::uint32_t maxSubgroupSize = 0;
   std::uint32_t timestampValidBits = 0;
   float timestampPeriodNs = 0;
-  std::uint32_t maxImageSize = 0;             ///< pixels on a side, of images and render areas
-  std::uint32_t maxSharedMemoryBytes = 0;     ///< of one compute workgroup
+  std::uint32_t maxImageSize = 0;          ///< pixels on a side, of images and render areas
+  std::uint32_t maxSharedMemoryBytes = 0;  ///< of one compute workgroup
   std::uint32_t maxWorkgroupInvocations = 0;
   std::uint64_t maxAllocationBytes = 0;
-  std::uint64_t deviceLocalBytes = 0;         ///< size of the largest device-local heap
-  std::map<std::string, bool> features;       ///< by the name of the Vulkan feature
+  std::uint64_t deviceLocalBytes = 0;    ///< size of the largest device-local heap
+  std::map<std::string, bool> features;  ///< by the name of the Vulkan feature
 
   bool isCpu() const { return type == "cpu"; }
   bool has(const std::string& feature) const {
@@ -52,8 +52,8 @@ class Device {
     bool validation = false;  ///< validation layers with synchronization validation
   };
 
-  /// Opens a device. Throws DeviceError when there is no Vulkan loader, no device, no such index, or
-  /// the device misses part of the baseline; InputError never.
+  /// Opens a device. Throws DeviceError when there is no Vulkan loader, no device, no such index,
+  /// or the device misses part of the baseline; InputError never.
   explicit Device(const Options& options);
   ~Device();
   Device(const Device&) = delete;
@@ -65,8 +65,9 @@ class Device {
   /// The index that Options{} would open, or -1.
   static int bestDevice(const std::vector<DeviceInfo>& devices);
 
-  /// What the baseline needs and `info` lacks; empty when the device will do. The baseline is Vulkan
-  /// 1.3 with the features in device.cpp, all of them common on desktop GPUs and in lavapipe.
+  /// What the baseline needs and `info` lacks; empty when the device will do. The baseline is
+  /// Vulkan 1.3 with the features in device.cpp, all of them common on desktop GPUs and in
+  /// lavapipe.
   static std::vector<std::string> missingBaseline(const DeviceInfo& info);
 
   const DeviceInfo& info() const { return info_; }

@@ -28,9 +28,9 @@ std::string versionName(std::uint32_t version) {
 }  // namespace
 
 FeatureChain queryFeatures(const vk::raii::PhysicalDevice& physical) {
-  return physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
-                               vk::PhysicalDeviceVulkan12Features,
-                               vk::PhysicalDeviceVulkan13Features>();
+  return physical
+      .getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
+                    vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
 }
 
 std::vector<NamedFeature> namedFeatures(FeatureChain& chain) {
@@ -69,9 +69,8 @@ DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical) {
   info.type = typeName(basic.deviceType);
   info.apiVersion = versionName(basic.apiVersion);
   info.timestampPeriodNs = basic.limits.timestampPeriod;
-  info.maxImageSize =
-      std::min({basic.limits.maxImageDimension2D, basic.limits.maxFramebufferWidth,
-                basic.limits.maxFramebufferHeight});
+  info.maxImageSize = std::min({basic.limits.maxImageDimension2D, basic.limits.maxFramebufferWidth,
+                                basic.limits.maxFramebufferHeight});
   info.maxSharedMemoryBytes = basic.limits.maxComputeSharedMemorySize;
   info.maxWorkgroupInvocations = basic.limits.maxComputeWorkGroupInvocations;
   for (const auto& family : physical.getQueueFamilyProperties())

@@ -27,9 +27,8 @@ GpuImage::GpuImage(const Device& device, MemoryLedger& ledger, const Description
   }
   image_.bindMemory(*memory_, 0);
   view_ = vk::raii::ImageView(
-      device.vk(),
-      vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, description.format, {},
-                              {description.aspect, 0, description.levels, 0, 1}));
+      device.vk(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, description.format,
+                                           {}, {description.aspect, 0, description.levels, 0, 1}));
   ledger_ = &ledger;
   bytes_ = bytes;
   ledger_->add(description_.name, bytes_);
@@ -55,9 +54,9 @@ void GpuImage::release() {
 void GpuImage::transition(const Commands& commands, vk::ImageLayout from, vk::ImageLayout to,
                           vk::PipelineStageFlags2 fromStage, vk::AccessFlags2 fromAccess,
                           vk::PipelineStageFlags2 toStage, vk::AccessFlags2 toAccess) const {
-  const vk::ImageMemoryBarrier2 barrier(
-      fromStage, fromAccess, toStage, toAccess, from, to, VK_QUEUE_FAMILY_IGNORED,
-      VK_QUEUE_FAMILY_IGNORED, *image_, {description_.aspect, 0, description_.levels, 0, 1});
+  const vk::ImageMemoryBarrier2 barrier(fromStage, fromAccess, toStage, toAccess, from, to,
+                                        VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image_,
+                                        {description_.aspect, 0, description_.levels, 0, 1});
   vk::DependencyInfo dependency;
   dependency.setImageMemoryBarriers(barrier);
   commands.pipelineBarrier2(dependency);
@@ -73,9 +72,10 @@ void uploadImage(const Device& device, const GpuImage& image, std::span<const Le
   for (const LevelData& level : levels) {
     std::memcpy(staging.mapped<std::byte>().data() + offset, level.bytes.data(),
                 level.bytes.size());
-    copies.emplace_back(offset, 0, 0,
-                        vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, level.level, 0, 1),
-                        vk::Offset3D(), vk::Extent3D(level.width, level.height, 1));
+    copies.emplace_back(
+        offset, 0, 0,
+        vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, level.level, 0, 1),
+        vk::Offset3D(), vk::Extent3D(level.width, level.height, 1));
     offset += (level.bytes.size() + 15) / 16 * 16;
   }
   device.runOnce([&](const Commands& commands) {
@@ -86,7 +86,8 @@ void uploadImage(const Device& device, const GpuImage& image, std::span<const Le
                      Stage::eCopy, Access::eTransferWrite);
     commands.copyBufferToImage(staging.vk(), image.vk(), Layout::eTransferDstOptimal, copies);
     image.transition(commands, Layout::eTransferDstOptimal, Layout::eShaderReadOnlyOptimal,
-                     Stage::eCopy, Access::eTransferWrite, Stage::eAllCommands, Access::eShaderRead);
+                     Stage::eCopy, Access::eTransferWrite, Stage::eAllCommands,
+                     Access::eShaderRead);
   });
 }
 

@@ -11,7 +11,8 @@ vk::raii::ShaderModule makeModule(const Device& device, const std::string& path,
   return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
 }
 
-vk::PipelineColorBlendAttachmentState blendState(vk::BlendFactor source, vk::BlendFactor destination) {
+vk::PipelineColorBlendAttachmentState blendState(vk::BlendFactor source,
+                                                 vk::BlendFactor destination) {
   using Component = vk::ColorComponentFlagBits;
   const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
   return {VK_TRUE,
@@ -49,9 +50,8 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ =
-      vk::raii::Pipeline(device.vk(), nullptr,
-                         vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+  pipeline.pipeline_ = vk::raii::Pipeline(
+      device.vk(), nullptr, vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
   return pipeline;
 }
 

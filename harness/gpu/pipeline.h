@@ -18,8 +18,9 @@ class Pipeline {
 
   /// A compute pipeline from shaders/`path`. `subgroupSize` (0 = the device's choice) is required
   /// through subgroupSizeControl where the device has it.
-  static Pipeline compute(const Device& device, const std::string& path, const Defines& defines = {},
-                          const Constants& constants = {}, std::uint32_t subgroupSize = 0);
+  static Pipeline compute(const Device& device, const std::string& path,
+                          const Defines& defines = {}, const Constants& constants = {},
+                          std::uint32_t subgroupSize = 0);
 
   struct Graphics {
     std::string vertexShader = "common/scene.vert";
@@ -30,7 +31,8 @@ class Pipeline {
     bool depthWrite = false;
     /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
     vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
-    std::vector<vk::PipelineColorBlendAttachmentState> blends;  ///< one per colour format; default: no blending
+    std::vector<vk::PipelineColorBlendAttachmentState>
+        blends;  ///< one per colour format; default: no blending
   };
   static Pipeline graphics(const Device& device, const Graphics& description);
 

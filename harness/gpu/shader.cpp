@@ -20,8 +20,8 @@
 namespace oitlab {
 namespace {
 
-// What every shader may use, so that none repeats it. Each is core in Vulkan 1.3, or a feature of the
-// baseline, or (subgroups, 64-bit atomics) used only by variants whose method checked for it.
+// What every shader may use, so that none repeats it. Each is core in Vulkan 1.3, or a feature of
+// the baseline, or (subgroups, 64-bit atomics) used only by variants whose method checked for it.
 constexpr const char* preamble = R"(
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
@@ -47,8 +47,8 @@ class Includer : public glslang::TShader::Includer {
       const auto path = folder / name;
       if (!std::filesystem::exists(path)) continue;
       auto* text = new std::string(readTextFile(path));
-      return new IncludeResult(std::filesystem::relative(path, root_).generic_string(), text->data(),
-                               text->size(), text);
+      return new IncludeResult(std::filesystem::relative(path, root_).generic_string(),
+                               text->data(), text->size(), text);
     }
     return nullptr;
   }

@@ -12,8 +12,8 @@ namespace oitlab {
 using Defines = std::map<std::string, std::string>;
 
 /// Compiles GLSL to SPIR-V when a pipeline is made, so that editing a shader needs no rebuild. The
-/// result is cached on disk by the hash of everything that goes into it: the text, what it includes,
-/// the definitions and the compiler's version.
+/// result is cached on disk by the hash of everything that goes into it: the text, what it
+/// includes, the definitions and the compiler's version.
 class ShaderLibrary {
  public:
   ShaderLibrary();

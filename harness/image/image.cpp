@@ -35,6 +35,13 @@ void checkImageSize(std::int64_t width, std::int64_t height, const std::string& 
                    name, width, height, kMaxSide, kMaxPixels);
 }
 
+void checkImagePath(const std::filesystem::path& path) {
+  formatOf(path);
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder))
+    fail<InputError>("{}: there is no folder {} to write it to", path.string(), folder.string());
+}
+
 Image readImage(const std::filesystem::path& path) {
   // The extension first: a wrong one should not cost the reading of a large file.
   const Format format = formatOf(path);

@@ -29,8 +29,8 @@ Image readImage(const std::filesystem::path& path);
 /// the extension is neither or the file cannot be written.
 void writeImage(const std::filesystem::path& path, const Image& image);
 
-/// Throws InputError unless `path` can be given to writeImage(): a known extension, in a folder that
-/// exists. Said before the work rather than after it.
+/// Throws InputError unless `path` can be given to writeImage(): a known extension, in a folder
+/// that exists. Said before the work rather than after it.
 void checkImagePath(const std::filesystem::path& path);
 
 /// The sRGB transfer function and its inverse, on [0, 1].

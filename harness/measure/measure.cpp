@@ -106,8 +106,7 @@ void measureInterleaved(Renderer& renderer, const Camera& camera,
     for (std::size_t i = 0; i < subjects.size(); ++i)
       if (!subjects[i].finished) turn.push_back(i);
     if (turn.empty()) return;
-    for (std::size_t i = turn.size(); i > 1; --i)
-      std::swap(turn[i - 1], turn[random.next() % i]);
+    for (std::size_t i = turn.size(); i > 1; --i) std::swap(turn[i - 1], turn[random.next() % i]);
     for (const std::size_t i : turn)
       guarded(i, [&](Subject& subject) {
         measureBlock(renderer, camera, subject);

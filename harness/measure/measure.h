@@ -38,10 +38,10 @@ struct Measurement {
   std::vector<std::byte> image;  ///< the last timed frame, as the target stores it
   std::string stopReason;
   double relativeSpread = 0;
-  double seconds = 0;             ///< wall-clock time spent on this cell
+  double seconds = 0;  ///< wall-clock time spent on this cell
   std::uint32_t blocks = 0;
   std::uint64_t rejectedSamples = 0;  ///< unusable timestamps, or frames recorded more than once
-  std::string failure;  ///< not empty: it failed on the way, for this reason
+  std::string failure;                ///< not empty: it failed on the way, for this reason
 };
 
 /// Measures methods against each other in shuffled blocks: in each block every method that still

@@ -22,7 +22,9 @@ std::vector<std::string> MethodInfo::missing(const DeviceInfo& device) const {
   return missing;
 }
 
-const std::map<std::string, MethodInfo>& methods() { return registry(); }
+const std::map<std::string, MethodInfo>& methods() {
+  return registry();
+}
 
 const MethodInfo& findMethod(const std::string& name) {
   const auto it = registry().find(name);

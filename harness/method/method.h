@@ -16,8 +16,8 @@ namespace oitlab {
 struct Status {
   /// Memory ran out, the method has made its buffers larger, and the frame is to be recorded again.
   bool recordAgain = false;
-  /// By name: "fragments" (transparent fragments in front of the opaque depth) and whatever else the
-  /// method counts. Complete after an instrumented frame.
+  /// By name: "fragments" (transparent fragments in front of the opaque depth) and whatever else
+  /// the method counts. Complete after an instrumented frame.
   std::map<std::string, std::uint64_t> counters;
 };
 
@@ -65,8 +65,8 @@ const std::map<std::string, MethodInfo>& methods();
 /// Throws InputError with a suggestion when there is no such method.
 const MethodInfo& findMethod(const std::string& name);
 
-/// Registers a method: `const RegisterMethod registered(info)` in the method's own file is the whole
-/// of it.
+/// Registers a method: `const RegisterMethod registered(info)` in the method's own file is the
+/// whole of it.
 struct RegisterMethod {
   explicit RegisterMethod(MethodInfo info);
 };

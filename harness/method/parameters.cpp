@@ -32,34 +32,33 @@ ParameterValue parseValue(const Parameter& parameter, const std::string& text,
   auto inRange = [&](double value) {
     if (!(value >= parameter.min && value <= parameter.max)) wrong(", out of range");
   };
-  return std::visit(
-      Overloaded{
-          [&](bool) -> ParameterValue {
-            if (text == "on" || text == "true" || text == "1") return true;
-            if (text == "off" || text == "false" || text == "0") return false;
-            wrong();
-            return false;
-          },
-          [&](std::int64_t) -> ParameterValue {
-            const auto value = parseNumber<std::int64_t>(text);
-            if (!value) wrong(", not a whole number");
-            inRange(double(*value));
-            return *value;
-          },
-          [&](double) -> ParameterValue {
-            const auto value = parseNumber<double>(text);
-            if (!value) wrong(", not a number");
-            inRange(*value);
-            return *value;
-          },
-          [&](const std::string&) -> ParameterValue {
-            if (std::find(parameter.choices.begin(), parameter.choices.end(), text) ==
-                parameter.choices.end())
-              wrong(didYouMean(text, parameter.choices));
-            return text;
-          },
-      },
-      parameter.defaultValue);
+  return std::visit(Overloaded{
+                        [&](bool) -> ParameterValue {
+                          if (text == "on" || text == "true" || text == "1") return true;
+                          if (text == "off" || text == "false" || text == "0") return false;
+                          wrong();
+                          return false;
+                        },
+                        [&](std::int64_t) -> ParameterValue {
+                          const auto value = parseNumber<std::int64_t>(text);
+                          if (!value) wrong(", not a whole number");
+                          inRange(double(*value));
+                          return *value;
+                        },
+                        [&](double) -> ParameterValue {
+                          const auto value = parseNumber<double>(text);
+                          if (!value) wrong(", not a number");
+                          inRange(*value);
+                          return *value;
+                        },
+                        [&](const std::string&) -> ParameterValue {
+                          if (std::find(parameter.choices.begin(), parameter.choices.end(), text) ==
+                              parameter.choices.end())
+                            wrong(didYouMean(text, parameter.choices));
+                          return text;
+                        },
+                    },
+                    parameter.defaultValue);
 }
 
 }  // namespace
@@ -76,10 +75,10 @@ nlohmann::json toJson(const ParameterValue& value) {
 }
 
 std::string Parameter::typeName() const {
-  return std::visit(Overloaded{[](bool) { return "bool"; }, [](std::int64_t) { return "int"; },
-                               [](double) { return "float"; },
-                               [](const std::string&) { return "enum"; }},
-                    defaultValue);
+  return std::visit(
+      Overloaded{[](bool) { return "bool"; }, [](std::int64_t) { return "int"; },
+                 [](double) { return "float"; }, [](const std::string&) { return "enum"; }},
+      defaultValue);
 }
 
 std::string Parameter::rangeText() const {

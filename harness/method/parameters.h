@@ -48,8 +48,8 @@ class Parameters {
   /// The defaults of `declared`, with `given` (name -> text as the command line or TOML has it)
   /// parsed and checked over them. Throws InputError: an unknown name with a suggestion, a value of
   /// the wrong type or out of range with the range. `owner` names the method in messages.
-  Parameters(const std::vector<Parameter>& declared, const std::map<std::string, std::string>& given,
-             const std::string& owner);
+  Parameters(const std::vector<Parameter>& declared,
+             const std::map<std::string, std::string>& given, const std::string& owner);
 
   bool flag(const std::string& name) const { return get<bool>(name); }
   std::int64_t integer(const std::string& name) const { return get<std::int64_t>(name); }

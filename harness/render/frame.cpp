@@ -23,7 +23,9 @@ void FrameTimer::begin(const Commands& commands, bool stages) {
   stamp(commands);
 }
 
-void FrameTimer::end(const Commands& commands) { stamp(commands); }
+void FrameTimer::end(const Commands& commands) {
+  stamp(commands);
+}
 
 void FrameTimer::beginStage(const Commands& commands, const std::string& name) {
   OITLAB_CHECK(stages_);
@@ -31,7 +33,9 @@ void FrameTimer::beginStage(const Commands& commands, const std::string& name) {
   stamp(commands);
 }
 
-void FrameTimer::endStage(const Commands& commands) { stamp(commands); }
+void FrameTimer::endStage(const Commands& commands) {
+  stamp(commands);
+}
 
 std::optional<std::uint64_t> FrameTimer::ticksBetween(std::uint64_t begin, std::uint64_t end,
                                                       std::uint32_t validBits) {
@@ -48,8 +52,7 @@ FrameTimer::Reading FrameTimer::read() {
   OITLAB_CHECK(result == vk::Result::eSuccess);
   const double msPerTick = double(device_.info().timestampPeriodNs) * 1e-6;
   auto between = [&](std::size_t first, std::size_t last) -> std::optional<double> {
-    const auto ticks =
-        ticksBetween(stamps[first], stamps[last], device_.info().timestampValidBits);
+    const auto ticks = ticksBetween(stamps[first], stamps[last], device_.info().timestampValidBits);
     if (!ticks) return std::nullopt;
     return double(*ticks) * msPerTick;
   };

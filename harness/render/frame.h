@@ -18,8 +18,10 @@ class FrameTimer {
   explicit FrameTimer(const Device& device);
 
   struct Reading {
-    std::optional<double> frameMs;  ///< empty when the delta was zero or negative: a rejected sample
-    std::vector<std::pair<std::string, double>> stageMs;  ///< in recording order; equal names summed
+    std::optional<double>
+        frameMs;  ///< empty when the delta was zero or negative: a rejected sample
+    std::vector<std::pair<std::string, double>>
+        stageMs;  ///< in recording order; equal names summed
   };
 
   void begin(const Commands& commands, bool stages);
@@ -30,8 +32,8 @@ class FrameTimer {
   /// Once the device is done with the frame.
   Reading read();
 
-  /// Ticks between two raw timestamps of which only `validBits` count, or nothing when zero, or when
-  /// the difference is more than half the counter's range: then time went backwards.
+  /// Ticks between two raw timestamps of which only `validBits` count, or nothing when zero, or
+  /// when the difference is more than half the counter's range: then time went backwards.
   static std::optional<std::uint64_t> ticksBetween(std::uint64_t begin, std::uint64_t end,
                                                    std::uint32_t validBits);
 
@@ -52,9 +54,9 @@ struct Frame {
   const GpuScene& scene;
   const Target& target;
   const Camera& camera;
-  vk::DescriptorSet bindings;     ///< set 0 of every pipeline
-  std::uint64_t constants;        ///< address of the FrameConstants
-  bool instrumented;              ///< a labelled run: stages are timed, counters may cost time
+  vk::DescriptorSet bindings;  ///< set 0 of every pipeline
+  std::uint64_t constants;     ///< address of the FrameConstants
+  bool instrumented;           ///< a labelled run: stages are timed, counters may cost time
   FrameTimer& timer;
 
   /// Brackets a stage: a row in the results. Outside instrumented frames nothing is recorded, since

@@ -26,9 +26,10 @@ std::vector<std::uint32_t> indicesOf(const Scene& scene, const std::vector<std::
 /// that the descriptor is always valid.
 GpuImage uploadAtlas(const Device& device, MemoryLedger& ledger, const Atlas& atlas,
                      const std::string& name) {
-  GpuImage::Description description{name, vk::Format::eR8G8B8A8Srgb, 1, 1, 1,
-                                    vk::ImageUsageFlagBits::eSampled |
-                                        vk::ImageUsageFlagBits::eTransferDst};
+  GpuImage::Description description{
+      name, vk::Format::eR8G8B8A8Srgb,
+      1,    1,
+      1,    vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst};
   std::vector<LevelData> levels;
   std::vector<std::vector<std::uint8_t>> decoded;
   const std::array<std::uint8_t, 4> white{255, 255, 255, 255};
@@ -40,11 +41,10 @@ GpuImage uploadAtlas(const Device& device, MemoryLedger& ledger, const Atlas& at
     description.height = std::uint32_t(atlas.height);
     description.levels = std::uint32_t(atlas.levels.size());
     if (compressed)
-      description.format =
-          atlas.alpha ? vk::Format::eBc3SrgbBlock : vk::Format::eBc1RgbSrgbBlock;
+      description.format = atlas.alpha ? vk::Format::eBc3SrgbBlock : vk::Format::eBc1RgbSrgbBlock;
     // Without BC support the same texels are uploaded decoded, so that the image stays the same.
-    for (const Atlas::Level& level : atlas.levels)
-      if (!compressed) decoded.push_back(decodeLevel(level, atlas.alpha));
+    for (std::size_t i = 0; i < atlas.levels.size() && !compressed; ++i)
+      decoded.push_back(decodeAtlasLevel(atlas, i));
     for (std::size_t i = 0; i < atlas.levels.size(); ++i) {
       const Atlas::Level& level = atlas.levels[i];
       levels.push_back({std::uint32_t(i), std::uint32_t(level.width), std::uint32_t(level.height),

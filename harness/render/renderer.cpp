@@ -15,7 +15,8 @@ using Layout = vk::ImageLayout;
 constexpr int maxRecordings = 8;
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 }  // namespace
@@ -81,8 +82,9 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
   try {
     commands_.reset();
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    const Frame frame{device_, commands_,       scene_,       target_, camera, bindings_.set(),
-                      constants_.address(), instrumented, timer_};
+    const Frame frame{
+        device_,      commands_, scene_, target_, camera, bindings_.set(), constants_.address(),
+        instrumented, timer_};
     timer_.begin(commands_, instrumented);
     frame.stage("opaque", [&] { recordOpaque(frame); });
     method.record(frame);
@@ -142,10 +144,9 @@ void Renderer::recordOpaque(const Frame& frame) const {
   target_.color().transition(commands, Layout::eGeneral, Layout::eGeneral,
                              Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
                              Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
-  target_.depth().transition(commands, Layout::eDepthAttachmentOptimal,
-                             Layout::eDepthStencilReadOnlyOptimal, depthStages,
-                             Access::eDepthStencilAttachmentWrite, Stage::eAllCommands,
-                             Access::eMemoryRead);
+  target_.depth().transition(
+      commands, Layout::eDepthAttachmentOptimal, Layout::eDepthStencilReadOnlyOptimal, depthStages,
+      Access::eDepthStencilAttachmentWrite, Stage::eAllCommands, Access::eMemoryRead);
 }
 
 std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {

@@ -9,8 +9,8 @@ namespace oitlab {
 struct FrameResult {
   std::optional<double> frameMs;  ///< GPU time; empty when the timestamps were unusable
   std::vector<std::pair<std::string, double>> stageMs;  ///< instrumented frames only
-  double cpuMs = 0;     ///< CPU time to record and submit, waiting excluded
-  int recordings = 1;   ///< more than 1: the method grew its memory, and the last one counts
+  double cpuMs = 0;    ///< CPU time to record and submit, waiting excluded
+  int recordings = 1;  ///< more than 1: the method grew its memory, and the last one counts
   std::map<std::string, std::uint64_t> counters;
 };
 
@@ -24,8 +24,8 @@ class Renderer {
   /// A method made ready for this renderer's scene and target.
   std::unique_ptr<Method> prepare(const MethodInfo& info, const Parameters& parameters) const;
 
-  /// Renders one frame and waits for it. Records again for as long as the method asks for it. Throws
-  /// DeviceError when the device fails or the method does not come to an end.
+  /// Renders one frame and waits for it. Records again for as long as the method asks for it.
+  /// Throws DeviceError when the device fails or the method does not come to an end.
   FrameResult render(Method& method, const Camera& camera, bool instrumented = false);
 
   const Device& device() const { return device_; }

@@ -20,12 +20,18 @@ constexpr std::array formats = {
     FormatEntry{TargetFormat::rgba8, "rgba8", vk::Format::eR8G8B8A8Unorm, 4},
     FormatEntry{TargetFormat::rgba32f, "rgba32f", vk::Format::eR32G32B32A32Sfloat, 16},
 };
-const FormatEntry& entryOf(TargetFormat format) { return formats[std::size_t(format)]; }
+const FormatEntry& entryOf(TargetFormat format) {
+  return formats[std::size_t(format)];
+}
 
 }  // namespace
 
-std::string formatName(TargetFormat format) { return entryOf(format).name; }
-vk::Format vulkanFormat(TargetFormat format) { return entryOf(format).vulkan; }
+std::string formatName(TargetFormat format) {
+  return entryOf(format).name;
+}
+vk::Format vulkanFormat(TargetFormat format) {
+  return entryOf(format).vulkan;
+}
 
 TargetFormat parseFormat(const std::string& name) {
   std::vector<std::string> names;
@@ -48,10 +54,10 @@ Target::Target(const Device& device, std::uint32_t width, std::uint32_t height, 
                     {"target color", vulkanFormat(format), width, height, 1,
                      Usage::eColorAttachment | Usage::eStorage | Usage::eTransferSrc |
                          Usage::eTransferDst | Usage::eSampled});
-  depth_ = GpuImage(device, memory_,
-                    {"target depth", depthFormat, width, height, 1,
-                     Usage::eDepthStencilAttachment | Usage::eSampled,
-                     vk::ImageAspectFlagBits::eDepth});
+  depth_ =
+      GpuImage(device, memory_,
+               {"target depth", depthFormat, width, height, 1,
+                Usage::eDepthStencilAttachment | Usage::eSampled, vk::ImageAspectFlagBits::eDepth});
 }
 
 std::vector<std::byte> Target::readBytes(const Device& device) const {
@@ -61,13 +67,15 @@ std::vector<std::byte> Target::readBytes(const Device& device) const {
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
-    const auto general = vk::ImageLayout::eGeneral;
-    color_.transition(commands, general, general, Stage::eAllCommands, Access::eMemoryWrite,
-                      Stage::eCopy, Access::eTransferRead);
+    using Layout = vk::ImageLayout;
+    color_.transition(commands, Layout::eGeneral, Layout::eTransferSrcOptimal, Stage::eAllCommands,
+                      Access::eMemoryWrite, Stage::eCopy, Access::eTransferRead);
     const vk::BufferImageCopy copy(
         0, 0, 0, vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, 0, 0, 1),
         vk::Offset3D(), vk::Extent3D(width(), height(), 1));
-    commands.copyImageToBuffer(color_.vk(), general, buffer.vk(), copy);
+    commands.copyImageToBuffer(color_.vk(), Layout::eTransferSrcOptimal, buffer.vk(), copy);
+    color_.transition(commands, Layout::eTransferSrcOptimal, Layout::eGeneral, Stage::eCopy, {},
+                      Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
     const vk::MemoryBarrier2 toHost(Stage::eCopy, Access::eTransferWrite, Stage::eHost,
                                     Access::eHostRead);
     vk::DependencyInfo dependency;
@@ -130,10 +138,10 @@ FrameBindings::FrameBindings(const Device& device, const GpuScene& scene, const 
   };
   std::array<vk::WriteDescriptorSet, 4> writes;
   for (std::uint32_t i = 0; i < writes.size(); ++i)
-    writes[i] = vk::WriteDescriptorSet(*set_, i, 0, 1,
-                                       i == 2 ? vk::DescriptorType::eStorageImage
-                                              : vk::DescriptorType::eCombinedImageSampler,
-                                       &infos[i]);
+    writes[i] = vk::WriteDescriptorSet(
+        *set_, i, 0, 1,
+        i == 2 ? vk::DescriptorType::eStorageImage : vk::DescriptorType::eCombinedImageSampler,
+        &infos[i]);
   device.vk().updateDescriptorSets(writes, nullptr);
 }
 

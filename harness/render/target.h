@@ -44,7 +44,8 @@ class Target {
   GpuImage color_, depth_;
 };
 
-/// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive it.
+/// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive
+/// it.
 class FrameBindings {
  public:
   FrameBindings(const Device& device, const GpuScene& scene, const Target& target);

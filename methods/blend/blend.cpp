@@ -18,9 +18,9 @@ class Blend : public Method {
                                             .depthFormat = Target::depthFormat,
                                             .blends = {straightOver()}});
     if (sorted_)
-      indices_ = Buffer(device, memory_, "sorted indices",
-                        std::max<std::uint64_t>(12ull * scene.transparentCount(), 16),
-                        BufferKind::upload);
+      indices_ =
+          Buffer(device, memory_, "sorted indices",
+                 std::max<std::uint64_t>(12ull * scene.transparentCount(), 16), BufferKind::upload);
     if (device.info().has("occlusionQueryPrecise"))
       samples_ = vk::raii::QueryPool(device.vk(), {{}, vk::QueryType::eOcclusion, 1});
   }
@@ -35,8 +35,7 @@ class Blend : public Method {
     if (counted_) frame.commands.resetQueryPool(*samples_, 0, 1);
     frame.stage("blend", [&] {
       frame.renderOnTarget([&] {
-        if (counted_)
-          frame.commands.beginQuery(*samples_, 0, vk::QueryControlFlagBits::ePrecise);
+        if (counted_) frame.commands.beginQuery(*samples_, 0, vk::QueryControlFlagBits::ePrecise);
         pipeline_.bind(frame.commands, frame.bindings);
         pipeline_.push(frame.commands, frame.constants);
         if (sorted_) {

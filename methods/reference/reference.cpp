@@ -13,14 +13,14 @@ class Reference : public Method {
                const Parameters& parameters) override {
     device_ = &device;
     pixels_ = std::uint64_t(target.width()) * target.height();
-    capture_ = Pipeline::graphics(device, {.fragmentShader = "reference/capture.frag",
-                                           .depthFormat = Target::depthFormat});
+    capture_ = Pipeline::graphics(
+        device, {.fragmentShader = "reference/capture.frag", .depthFormat = Target::depthFormat});
     resolve_ = Pipeline::compute(device, "reference/resolve.comp",
                                  {{"TARGET_FORMAT", formatName(target.format())}});
     heads_ = Buffer(device, memory_, "list heads", pixels_ * sizeof(std::uint32_t));
     counters_ = Buffer(device, memory_, "counters", sizeof(ListCounters));
-    readback_ = Buffer(device, memory_, "counters readback", sizeof(ListCounters),
-                       BufferKind::readback);
+    readback_ =
+        Buffer(device, memory_, "counters readback", sizeof(ListCounters), BufferKind::readback);
     allocateNodes(std::uint64_t(double(pixels_) * parameters.real("initial_depth")) + 1);
   }
 
@@ -55,7 +55,8 @@ class Reference : public Method {
   Status status() override {
     const ListCounters counters = readback_.mapped<ListCounters>()[0];
     if (counters.fragments > capacity_) {
-      // A little more than was counted, so that a slowly turning camera does not grow it every frame.
+      // A little more than was counted, so that a slowly turning camera does not grow it every
+      // frame.
       allocateNodes(counters.fragments + counters.fragments / 16ull);
       return {.recordAgain = true};
     }
@@ -68,8 +69,8 @@ class Reference : public Method {
   void allocateNodes(std::uint64_t nodes) {
     // Node indices and the fragment counter are 32 bits wide.
     if (nodes >= LIST_END)
-      fail<DeviceError>("reference: {} fragments are more than the 2^32 - 1 that its lists can name",
-                        nodes);
+      fail<DeviceError>(
+          "reference: {} fragments are more than the 2^32 - 1 that its lists can name", nodes);
     nodes_ = Buffer();  // give the old one back first: both may not fit
     nodes_ = Buffer(*device_, memory_, "fragment nodes", nodes * sizeof(Node));
     capacity_ = std::uint32_t(nodes);

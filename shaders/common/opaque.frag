@@ -7,6 +7,6 @@ layout(location = 0) out vec4 outColor;
 
 void main() {
   vec4 color;
-  if (!shade(frame.c.materials, surfaceInput(), color)) discard;
+  if (!shade(frame.c.materials.at[inMaterial], surfaceInput(), color)) discard;
   outColor = vec4(color.rgb, 1.0);
 }

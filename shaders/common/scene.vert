@@ -11,12 +11,11 @@ layout(location = 1) out vec2 outUv;
 layout(location = 2) out vec4 outColor;
 layout(location = 3) flat out uint outMaterial;
 
-// The opaque pass and each method's pass must produce the same depths.
-invariant gl_Position;
-
 void main() {
   const Vertex v = frame.c.vertices.at[gl_VertexIndex];
-  gl_Position = frame.c.viewProjection * vec4(v.position, 1.0);
+  // The opaque pass and each method's pass must produce the same depths, however they are compiled.
+  precise const vec4 position = frame.c.viewProjection * vec4(v.position, 1.0);
+  gl_Position = position;
   outNormal = unpackNormal(v.normal);
   outUv = v.uv;
   outColor = unpackUnorm4x8(v.color);

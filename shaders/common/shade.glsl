@@ -12,7 +12,6 @@ struct Surface {
   vec2 uvDx;    // analytic derivative of uv to the right neighbour, per pixel
   vec2 uvDy;    // and to the lower one
   vec4 color;   // vertex colour, linear
-  uint material;
 };
 
 // Fixed light, so that scenes look alike under every method: a hemisphere around this direction
@@ -32,8 +31,7 @@ vec4 sampleTexture(GpuMaterial material, Surface s) {
 
 // False where the material's cutoff removes the fragment. `color` is linear, not premultiplied, its
 // alpha in [0, 1].
-bool shade(MaterialBuffer materials, Surface s, out vec4 color) {
-  const GpuMaterial material = materials.at[s.material];
+bool shade(GpuMaterial material, Surface s, out vec4 color) {
   color = material.baseColor;
   color.rgb *= s.color.rgb;
   if (material.ignoreVertexAlpha == 0u) color.a *= s.color.a;

@@ -21,7 +21,6 @@ Surface surfaceInput() {
   s.uvDx = (dFdx(uvInvW) - inUv * dFdx(invW)) / invW;
   s.uvDy = (dFdy(uvInvW) - inUv * dFdy(invW)) / invW;
   s.color = inColor;
-  s.material = inMaterial;
   return s;
 }
 

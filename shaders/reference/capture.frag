@@ -5,13 +5,13 @@
 
 layout(push_constant, scalar) uniform Push { ListPush push; };
 
-// Without it the depth test would come after the stores below.
+// Without it the depth test would come after the stores below. Helper invocations need no care: their
+// stores and atomics have no effect.
 layout(early_fragment_tests) in;
 
 void main() {
   vec4 color;
-  if (!shade(push.frame.c.materials, surfaceInput(), color)) return;
-  if (gl_HelperInvocation) return;
+  if (!shade(push.frame.c.materials.at[inMaterial], surfaceInput(), color)) return;
   const uint index = atomicAdd(push.counters.c.fragments, 1u);
   if (index >= push.capacity) return;  // counted all the same: the host grows the pool
   const uvec2 pixel = uvec2(gl_FragCoord.xy);

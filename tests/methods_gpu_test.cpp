@@ -1,0 +1,190 @@
+// The methods on the device: exact where they claim it, from run to run and under shuffled input.
+#include "support/gpu.h"
+
+#include <gmock/gmock.h>
+
+#include "quality/compare.h"
+
+namespace oitlab::testing {
+namespace {
+
+class Methods : public GpuTest {};
+
+Scene generated(const std::string& name, float detail = 1.0f) {
+  return loadScene({name, {}, detail});
+}
+
+float centerChannel(const Image& image, int channel) {
+  return image.at(image.width / 2, image.height / 2)[channel];
+}
+
+// Two layers by hand: over = a1 c1 + (1 - a1)(a2 c2 + (1 - a2) background).
+TEST_F(Methods, TwoLayersBlendAsWorkedOutByHand) {
+  const std::array<glm::vec3, 3> far = {glm::vec3{-9, -9, -1}, {9, -9, -1}, {0, 9, -1}};
+  const std::array<glm::vec3, 3> near = {glm::vec3{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+  const glm::vec4 red{1, 0, 0, 0.5f}, green{0, 1, 0, 0.25f};
+  // The nearer one first: wrong for blending in submission order, no matter for the reference.
+  RenderFixture fixture(triangleScene({near, far}, {red, green}, frontCamera()), 17, 11);
+  const auto exact = fixture.render("reference");
+  // shade(): the normal (0, 0, 1) against the light gives 0.2 + 0.8 * (0.5 + 0.5 * 0.4206).
+  const float light = 0.2f + 0.8f * (0.5f + 0.5f * 0.4206f);
+  const float redAlpha = 128 / 255.0f, greenAlpha = 64 / 255.0f;  // as stored in 8 bits
+  const float transmitted = (1 - redAlpha) * (1 - greenAlpha) * backgroundColor.r;
+  EXPECT_NEAR(centerChannel(exact.image, 0), redAlpha * light + transmitted, 1e-5f);
+  EXPECT_NEAR(centerChannel(exact.image, 1), (1 - redAlpha) * greenAlpha * light + transmitted, 1e-5f);
+  EXPECT_NEAR(centerChannel(exact.image, 2), transmitted, 1e-5f);
+  EXPECT_EQ(exact.frame.counters.at("fragments"), 2u * 17 * 11);
+  EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 2u);
+  EXPECT_EQ(exact.frame.counters.at("covered_pixels"), 17u * 11);
+
+  const auto sorted = fixture.render("blend", {{"order", "sorted"}});
+  EXPECT_LT(compareImages(sorted.image, exact.image).maxError, 1e-5);
+  const auto submitted = fixture.render("blend", {{"order", "submission"}});
+  EXPECT_GT(compareImages(submitted.image, exact.image).maxError, 0.05);
+}
+
+TEST_F(Methods, ReferenceIsTheSameUnderShuffledSubmissionAndFromRunToRun) {
+  for (const std::string name : {"boxes", "planes", "teapot"}) {
+    const Scene scene = generated(name, 0.1f);
+    RenderFixture plain(scene, 160, 90);
+    const std::string hash = plain.render("reference").hash;
+    EXPECT_EQ(plain.render("reference").hash, hash) << name << ", rendered again";
+    for (const std::uint64_t seed : {1, 2, 3})
+      EXPECT_EQ(RenderFixture(scene, 160, 90, seed).render("reference").hash, hash)
+          << name << ", shuffled with seed " << seed;
+  }
+}
+
+TEST_F(Methods, ReferenceOrdersEqualDepthsByPrimitiveId) {
+  for (const std::uint64_t seed : {11, 12}) {
+    const Scene soup = randomSoup(seed, 120);
+    const std::string hash = RenderFixture(soup, 64, 64).render("reference").hash;
+    for (const std::uint64_t shuffle : {1, 2, 3})
+      EXPECT_EQ(RenderFixture(soup, 64, 64, shuffle).render("reference").hash, hash)
+          << "soup " << seed << ", shuffled with seed " << shuffle;
+  }
+}
+
+// The same fragments, blended by the fixed-function unit in the exact order: parallel planes are
+// sorted right by their centroids.
+TEST_F(Methods, SortedBlendingOfParallelPlanesIsTheReference) {
+  RenderFixture fixture(generated("planes"), 160, 90);
+  const auto exact = fixture.render("reference");
+  const auto sorted = fixture.render("blend", {{"order", "sorted"}});
+  const Comparison c = compareImages(sorted.image, exact.image);
+  EXPECT_LT(c.maxError, 1e-4);
+  EXPECT_EQ(sorted.frame.counters.at("fragments"), exact.frame.counters.at("fragments"));
+}
+
+TEST_F(Methods, ReferenceGrowsItsPoolAndLosesNothing) {
+  RenderFixture fixture(generated("planes"), 96, 64);
+  const auto roomy = fixture.render("reference", {{"initial_depth", "64"}});
+  const auto tight = fixture.render("reference", {{"initial_depth", "0"}});
+  EXPECT_EQ(roomy.frame.recordings, 1);
+  EXPECT_EQ(tight.frame.recordings, 2);
+  EXPECT_EQ(tight.hash, roomy.hash);
+  EXPECT_EQ(tight.frame.counters, roomy.frame.counters);
+}
+
+// No limit on the fragments of a pixel: 3,000 layers over the whole target.
+TEST_F(Methods, ReferenceSortsThousandsOfLayers) {
+  std::vector<std::array<glm::vec3, 3>> layers;
+  std::vector<glm::vec4> colors;
+  for (int i = 0; i < 3000; ++i) {
+    const float z = -0.001f * float((i * 7919) % 3000);  // a permutation: 7919 is prime
+    layers.push_back({glm::vec3{-99, -99, z}, {99, -99, z}, {0, 99, z}});
+    colors.emplace_back(float(i % 7) / 6, float(i % 11) / 10, float(i % 13) / 12, 0.01f);
+  }
+  const Scene scene = triangleScene(layers, colors, frontCamera());
+  RenderFixture fixture(scene, 8, 8);
+  const auto exact = fixture.render("reference");
+  EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 3000u);
+  const auto sorted = fixture.render("blend", {{"order", "sorted"}});
+  // Back to front in float32 rounds 3,000 times in another order.
+  EXPECT_LT(compareImages(sorted.image, exact.image).maxError, 1e-3);
+}
+
+// A closed sheet of small triangles: each pixel is covered once, shared edges neither twice nor
+// not at all, at a grazing angle too.
+TEST_F(Methods, TessellatedSheetCoversEveryPixelOnce) {
+  constexpr int cells = 37;
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  auto corner = [&](int x, int y) {
+    return glm::vec3(-40.0f + 80.0f * float(x) / cells, -40.0f + 80.0f * float(y) / cells, 0.0f);
+  };
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      triangles.push_back({corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)});
+      triangles.push_back({corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)});
+    }
+  RenderFixture fixture(triangleScene(triangles, {{1, 1, 1, 0.5f}}, frontCamera()), 101, 67);
+  for (const float tilt : {0.0f, 0.4f, 0.9f}) {
+    Camera camera = frontCamera();
+    camera.eye = {tilt, 0.3f * tilt, 1.0f};
+    const auto exact = fixture.render("reference", {}, camera);
+    EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 1u) << tilt;
+    EXPECT_EQ(exact.frame.counters.at("fragments"), 101u * 67) << tilt;
+  }
+}
+
+// Opaque geometry hides what is behind it and is seen through what is in front.
+TEST_F(Methods, TransparentFragmentsAreTestedAgainstOpaqueDepth) {
+  const auto layer = [](float z) {
+    return std::array{glm::vec3{-9, -9, z}, glm::vec3{9, -9, z}, glm::vec3{0, 9, z}};
+  };
+  Scene scene = triangleScene({layer(0), layer(-1), layer(-2)},
+                              {{1, 0, 0, 0.5f}, {0, 1, 0, 1}, {0, 0, 1, 0.5f}}, frontCamera());
+  Material opaque;
+  scene.materials.push_back(opaque);
+  for (int corner = 0; corner < 3; ++corner) scene.vertices[scene.triangles[1][corner]].material = 1;
+  RenderFixture fixture(scene, 16, 16);
+  const auto exact = fixture.render("reference");
+  EXPECT_EQ(exact.frame.counters.at("fragments"), 16u * 16);
+  EXPECT_FLOAT_EQ(centerChannel(exact.image, 2), 0.0f);
+  EXPECT_GT(centerChannel(exact.image, 1), 0.2f);
+  const auto blended = fixture.render("blend");
+  EXPECT_LT(compareImages(blended.image, exact.image).maxError, 1e-5);
+}
+
+TEST_F(Methods, EveryTargetFormatHoldsTheSamePicture) {
+  const Scene scene = generated("boxes", 0.05f);
+  const auto exact = RenderFixture(scene, 80, 45).render("reference");
+  for (const TargetFormat format : {TargetFormat::rgba16f, TargetFormat::rgba8}) {
+    const auto other = RenderFixture(scene, 80, 45, {}, format).render("reference");
+    EXPECT_LT(compareImages(other.image, exact.image).maxError, 1.0 / 255) << formatName(format);
+  }
+}
+
+TEST_F(Methods, AnEmptyViewIsTheBackground) {
+  Camera away = frontCamera();
+  away.eye = {0, 0, 5};
+  away.target = {0, 0, 6};
+  RenderFixture fixture(randomSoup(1, 8), 33, 9);
+  for (const auto& [name, info] : methods()) {
+    const auto result = fixture.render(name, {}, away);
+    for (int channel = 0; channel < 3; ++channel)
+      EXPECT_FLOAT_EQ(centerChannel(result.image, channel), backgroundColor[channel]) << name;
+  }
+}
+
+TEST_F(Methods, MemoryIsListedByBuffer) {
+  RenderFixture fixture(generated("planes"), 64, 32);
+  const MethodInfo& info = findMethod("reference");
+  const auto method = fixture.renderer().prepare(
+      info, Parameters(info.parameters, {{"initial_depth", "2"}}, info.name));
+  const auto& buffers = method->memory().byName();
+  EXPECT_EQ(buffers.at("list heads"), 64u * 32 * 4);
+  EXPECT_EQ(buffers.at("fragment nodes"), (2u * 64 * 32 + 1) * 28);
+}
+
+TEST(FrameTimer, MasksTimestampsAndRejectsWhatRunsBackwards) {
+  EXPECT_EQ(FrameTimer::ticksBetween(10, 25, 64), 15u);
+  EXPECT_EQ(FrameTimer::ticksBetween(250, 4, 8), 10u);  // the 8-bit counter wrapped
+  EXPECT_EQ(FrameTimer::ticksBetween(0x1fa, 0x204, 8), 10u);  // bits beyond the valid ones differ
+  EXPECT_EQ(FrameTimer::ticksBetween(7, 7, 64), std::nullopt);
+  EXPECT_EQ(FrameTimer::ticksBetween(25, 10, 64), std::nullopt);
+  EXPECT_EQ(FrameTimer::ticksBetween(25, 10, 36), std::nullopt);
+}
+
+}  // namespace
+}  // namespace oitlab::testing

@@ -1,0 +1,97 @@
+#include "support/gpu.h"
+
+#include "util/error.h"
+#include "util/random.h"
+
+namespace oitlab::testing {
+
+const Device& sharedDevice() {
+  static const Device device(Device::Options{.validation = true});
+  return device;
+}
+
+void GpuTest::SetUp() {
+  try {
+    messagesBefore_ = sharedDevice().validationMessages().size();
+  } catch (const DeviceError& error) {
+    // A machine without Vulkan must not look as if it had passed: CI has a device, and fails here.
+    if (std::getenv("CI") != nullptr) FAIL() << error.what();
+    GTEST_SKIP() << error.what();
+  }
+}
+
+void GpuTest::TearDown() {
+  if (IsSkipped()) return;
+  const auto messages = sharedDevice().validationMessages();
+  for (std::size_t i = messagesBefore_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+}
+
+RenderFixture::RenderFixture(Scene scene, std::uint32_t width, std::uint32_t height,
+                             std::optional<std::uint64_t> shuffleSeed, TargetFormat format)
+    : scene_(std::move(scene)),
+      gpuScene_(sharedDevice(), scene_, shuffleSeed),
+      target_(sharedDevice(), width, height, format),
+      renderer_(sharedDevice(), gpuScene_, target_) {}
+
+RenderFixture::Result RenderFixture::render(const std::string& name,
+                                            const std::map<std::string, std::string>& parameters,
+                                            std::optional<Camera> camera) {
+  const MethodInfo& info = findMethod(name);
+  const auto method = renderer_.prepare(info, Parameters(info.parameters, parameters, name));
+  Result result;
+  result.frame = renderer_.render(*method, camera.value_or(defaultView()), true);
+  const auto bytes = target_.readBytes(sharedDevice());
+  result.image = target_.toImage(bytes);
+  result.hash = imageHash(bytes);
+  return result;
+}
+
+Scene triangleScene(const std::vector<std::array<glm::vec3, 3>>& triangles,
+                    const std::vector<glm::vec4>& colors, const Camera& camera) {
+  Scene scene;
+  scene.name = "triangles";
+  Material material;
+  material.alphaMode = AlphaMode::blend;
+  scene.materials = {material};
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto first = std::uint32_t(scene.vertices.size());
+    for (const glm::vec3& position : triangles[i])
+      scene.vertices.push_back({position, packNormal({0.0f, 0.0f, 1.0f}), {0.0f, 0.0f},
+                                packColor(colors[i % colors.size()]), 0});
+    scene.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  computeBounds(scene);
+  scene.views["default"] = camera;
+  return scene;
+}
+
+Camera frontCamera() {
+  Camera camera;
+  camera.eye = {0.0f, 0.0f, 1.0f};
+  camera.target = {0.0f, 0.0f, 0.0f};
+  camera.fovY = glm::radians(90.0f);  // at distance 1, y spans [-1, 1]
+  camera.near = 0.05f;
+  return camera;
+}
+
+Scene randomSoup(std::uint64_t seed, int count) {
+  Pcg32 random(seed);
+  auto point = [&] {
+    return glm::vec3(random.uniform(-1.2f, 1.2f), random.uniform(-1.2f, 1.2f),
+                     random.uniform(-1.0f, 0.5f));
+  };
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  std::vector<glm::vec4> colors;
+  for (int i = 0; i < count; ++i) {
+    // Every fourth triangle repeats an earlier one, so that equal depths are sure to occur.
+    if (i % 4 == 3)
+      triangles.push_back(triangles[random.next() % triangles.size()]);
+    else
+      triangles.push_back({point(), point(), point()});
+    colors.emplace_back(random.uniform(), random.uniform(), random.uniform(),
+                        random.uniform(0.05f, 0.95f));
+  }
+  return triangleScene(triangles, colors, frontCamera());
+}
+
+}  // namespace oitlab::testing
