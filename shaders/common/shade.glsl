@@ -36,6 +36,7 @@ bool shade(GpuMaterial material, Surface s, out vec4 color) {
   color.rgb *= s.color.rgb;
   if (material.ignoreVertexAlpha == 0u) color.a *= s.color.a;
   if (material.atlas != 0u) color *= sampleTexture(material, s);
+  // The cutoff is that of the final alpha: an opacity override has scaled it (scene/scene.h).
   if (color.a < material.alphaCutoff) return false;
   const float wrapped = 0.5 + 0.5 * dot(normalize(s.normal), toLight);
   color.rgb *= mix(ambient, 1.0, wrapped);
