@@ -84,12 +84,12 @@ def parameter(value: object) -> str:
     """A parameter's value as one would type it."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    return f"{value:g}" if isinstance(value, float) else one_line(str(value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def one_line(text: str) -> str:
-    """Text on one line without control characters, so that it can't upset a terminal or a table."""
-    return "".join(c for c in re.sub(r"\s+", " ", text).strip() if c.isprintable())
+    """Text without line breaks and control characters: it can't upset a terminal or a table."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def natural_key(text: str) -> list[tuple[bool, object]]:

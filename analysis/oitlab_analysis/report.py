@@ -46,7 +46,7 @@ def make_report(folder: Path) -> Result:
     table = add_comparisons(collection.table, collection.cells)
     sections = make_sections(collection, table)
     warnings = mixture_warnings(table) + problem_lines(collection.problems)
-    charts = [plots.save_charts(s, i + 1, folder / "plots") for i, s in enumerate(sections)]
+    charts = plots.save_charts(sections, folder / "plots")
 
     csv, markdown, html = folder / "cells.csv", folder / "report.md", folder / "report.html"
     table.to_csv(csv, index=False)
@@ -99,7 +99,7 @@ def unmeasured(section: Section) -> list[dict[str, str]]:
 
 def commands(collection: Collection, section: Section) -> list[str]:
     """The commands that were run, and the one that makes this report."""
-    shown = [formats.one_line(command) for command in section.commands[:MOST_NAMED]]
+    shown = section.commands[:MOST_NAMED]
     if len(section.commands) > MOST_NAMED:
         shown.append(f"# and {len(section.commands) - MOST_NAMED} more: column command of cells.csv")
     return [*shown, f"oitlab report {shlex.quote(str(collection.folder))}"]

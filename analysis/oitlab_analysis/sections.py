@@ -85,7 +85,7 @@ def _section(collection: Collection, group: pandas.DataFrame, varying: list[str]
         "Commit": first["commit"],
         "Build": first["build"] or NOTHING,
         "Validation layers": "on" if first["validation"] else "off",
-        "Measured": f"{dates[0]} to {dates[-1]}" if dates else NOTHING,
+        "Measured": " to ".join(dict.fromkeys((dates[0], dates[-1]))) if dates else NOTHING,
         "Seeds": ", ".join(sorted({f"{seed:g}" for seed in group["seed"].dropna()})) or NOTHING,
     }
     measured = [collection.cells[i] for i in group.loc[group["status"] == "ok", "id"]]

@@ -17,7 +17,7 @@ TERMINAL_WIDTH = 100
 def describe(row: pandas.Series) -> dict[str, str]:
     """The figures of one cell as text, by the names that the tables use."""
     if row["status"] != "ok":
-        return {"frame": row["status"], "reason": formats.one_line(row["reason"]) or "no reason given"}
+        return {"frame": row["status"], "reason": row["reason"].strip() or "no reason given"}
     frame = formats.with_interval(
         row["frame_ms.median"], row["frame_ms.ci_low"], row["frame_ms.ci_high"]
     )
@@ -60,7 +60,7 @@ TERMINAL_COLUMNS = (
 
 def terminal_table(section: Section) -> str:
     """Aligned text, one block of lines per setting, at most 100 columns wide."""
-    lines = textwrap.wrap(formats.one_line(section.title), TERMINAL_WIDTH)
+    lines = textwrap.wrap(section.title, TERMINAL_WIDTH)
     for warning in section.warnings:
         lines += textwrap.wrap(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ")
     head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
@@ -78,14 +78,14 @@ def setting_heading(cells: pandas.DataFrame) -> str:
     triangles = cells["triangles"].max()  # failed cells may not know it
     if formats.is_number(triangles):
         parts.append(f"{formats.count(triangles)} triangles")
-    return formats.one_line(" · ".join(parts))
+    return " · ".join(parts)
 
 
 def _terminal_rows(row: pandas.Series) -> list[str]:
     """One cell; a label that is too long goes on in the next line, nothing is cut off."""
     texts = describe(row)
     width = TERMINAL_COLUMNS[0][2]
-    names = textwrap.wrap(formats.one_line(row["label"]), width, subsequent_indent="  ")
+    names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
     if row["status"] != "ok":
         reason = textwrap.wrap(f"{row['status']}: {texts['reason']}", TERMINAL_WIDTH - width - 2)
         height = max(len(names), len(reason))
@@ -118,7 +118,7 @@ MARKDOWN_COLUMNS = (
 
 def markdown_text(text: str) -> str:
     """Text that Markdown shows as it is, also inside a table."""
-    text = formats.one_line(text).replace("&", "&amp;").replace("<", "&lt;")
+    text = text.replace("&", "&amp;").replace("<", "&lt;")
     for character in "\\`*_[]|#":
         text = text.replace(character, "\\" + character)
     return text
