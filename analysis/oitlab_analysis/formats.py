@@ -22,7 +22,8 @@ def decimals_for(value: float, digits: int = 3) -> int:
     """Decimals that show `digits` significant digits; whole numbers are never rounded to tens."""
     if value == 0:
         return 0
-    return max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = float(f"{abs(value):.{digits - 1}e}")  # 9.996 is shown as 10.0, not as 10.00
+    return max(0, digits - 1 - math.floor(math.log10(rounded)))
 
 
 def number(value: float | None, digits: int = 3) -> str:

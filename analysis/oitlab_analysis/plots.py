@@ -139,7 +139,7 @@ def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]])
         y += height + BETWEEN_SETTINGS
     figure, axes = _axes(y)
     low, high = _set_time_axis(axes, section.table)
-    shown = {row["label"] for _, row in rows}
+    shown = [label for label in styles if any(row["label"] == label for _, row in rows)]
     for label in shown:
         _draw_bars(axes, [pair for pair in rows if pair[1]["label"] == label], styles[label], low)
     axes.set_yticks(middles, names)
