@@ -74,11 +74,9 @@ def share(value: float | None) -> str:
     return f"{number(value * 100)} %"
 
 
-def decibels(value: float | None, scored: bool) -> str:
-    """PSNR in dB. A scored image without a PSNR is equal to its reference (infinite PSNR)."""
-    if not scored:
-        return NOTHING
-    return number(value) if is_number(value) else "∞ (equal)"
+def decibels(psnr: float | None, rmse: float | None) -> str:
+    """PSNR in dB. It is infinite, written as null, where the image equals its reference."""
+    return "∞ (equal)" if not is_number(psnr) and rmse == 0 else number(psnr)
 
 
 def parameter(value: object) -> str:

@@ -114,7 +114,11 @@ def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
 
 
 def method_styles(table: pandas.DataFrame) -> dict[str, tuple[str, str]]:
-    """Label -> colour and hatch. One colour a method, another hatch for each of its variants."""
+    """Label -> colour and hatch, for what was measured.
+
+    One colour a method, another hatch for each of its variants.
+    """
+    table = table[table["status"] == "ok"]
     methods = list(dict.fromkeys(table.sort_values("method", kind="stable")["method"]))
     methods.sort(key=lambda method: method != "blend")
     labels = list(dict.fromkeys(zip(table["method"], table["label"])))
@@ -139,10 +143,14 @@ def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]])
         y += height + BETWEEN_SETTINGS
     figure, axes = _axes(y)
     low, high = _set_time_axis(axes, section.table)
-    shown = [label for label in styles if any(row["label"] == label for _, row in rows)]
-    for label in shown:
-        _draw_bars(axes, [pair for pair in rows if pair[1]["label"] == label], styles[label], low)
+    for label, style in styles.items():
+        measured = [(y, row) for y, row in rows if (row["status"], row["label"]) == ("ok", label)]
+        if measured:
+            _draw_bars(axes, measured, style, low)
+    for y, row in rows:
+        _write_beside(axes, y, row, low)
     axes.set_yticks(middles, names)
+    shown = {row["label"] for _, row in rows}
     handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=name)
                for name, (c, h) in styles.items() if name in shown]
     _legend(figure, axes, handles)
@@ -180,23 +188,25 @@ def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> tuple[float, float]:
 def _draw_bars(
     axes: Axes, rows: list[tuple[float, pandas.Series]], style: tuple[str, str], low: float
 ) -> None:
-    """All bars of one method, with their intervals and figures. A cell without a time says why."""
-    measured = [(y, row) for y, row in rows if row["status"] == "ok"]
-    for y, row in rows:
-        text, x, gap = f"{row['label']}: {row['status']}", low, 3
-        if row["status"] == "ok":
-            median = row["frame_ms.median"]
-            text, x, gap = formats.number(median), max(median, row["frame_ms.ci_high"]), 4
-        axes.annotate(text, (x, y), (gap, 0), textcoords="offset points", va="center", size=7)
-    heights = [y for y, _ in measured]
-    medians = [row["frame_ms.median"] for _, row in measured]
-    axes.barh(heights, [m - low for m in medians], BAR * 0.92, low, color=style[0], hatch=style[1],
-              edgecolor="black", linewidth=0.5)
-    ends = [[row["frame_ms.ci_low"] for _, row in measured],
-            [row["frame_ms.ci_high"] for _, row in measured]]
-    axes.hlines(heights, *ends, color="black", linewidth=1.2)
-    for side in ends:
-        axes.plot(side, heights, color="black", marker="|", markersize=5, linestyle="none")
+    """All bars of one method with their intervals, in one go: an artist each would be slow."""
+    heights = [y for y, _ in rows]
+    medians, lower, upper = (
+        [row[f"frame_ms.{key}"] for _, row in rows] for key in ("median", "ci_low", "ci_high")
+    )
+    axes.barh(heights, [median - low for median in medians], BAR * 0.92, low, color=style[0],
+              hatch=style[1], edgecolor="black", linewidth=0.5)
+    axes.hlines(heights, lower, upper, color="black", linewidth=1.2)
+    for ends in (lower, upper):
+        axes.plot(ends, heights, color="black", marker="|", markersize=5, linestyle="none")
+
+
+def _write_beside(axes: Axes, y: float, row: pandas.Series, low: float) -> None:
+    """The median right of its bar; where there is none, why."""
+    text, x = f"{row['label']}: {row['status']}", low
+    if row["status"] == "ok":
+        median = row["frame_ms.median"]
+        text, x = formats.number(median), max(median, row["frame_ms.ci_high"])
+    axes.annotate(text, (x, y), (4, 0), textcoords="offset points", va="center", size=7)
 
 
 def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> Figure | None:
@@ -260,7 +270,7 @@ def _draw_stage_panel(
 
 def _legend(figure: Figure, axes: Axes, handles: list, above: float = 0.0) -> None:
     """A legend right above the axes, `above` inches up, in as many columns as fit."""
-    longest = max(len(handle.get_label()) for handle in handles)
+    longest = max((len(handle.get_label()) for handle in handles), default=0)
     height = axes.get_position().height * figure.get_figheight()
     axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0, 1 + above / height),
                 borderaxespad=0.3, ncol=max(1, min(len(handles), 100 // (longest + 7))), frameon=False,

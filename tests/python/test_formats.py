@@ -34,10 +34,11 @@ def test_share_never_rounds_an_error_to_zero(value, text):
     assert formats.share(value) == text
 
 
-def test_psnr_of_an_equal_and_of_an_unscored_image_differ():
-    assert formats.decibels(None, scored=True) == "∞ (equal)"
-    assert formats.decibels(None, scored=False) == "–"
-    assert formats.decibels(33.333, scored=True) == "33.3"
+@pytest.mark.parametrize("psnr, rmse, text", [
+    (None, 0.0, "∞ (equal)"), (None, None, "–"), (33.333, 0.02, "33.3"),
+    (None, 0.02, "–")])  # a cell that contradicts itself must not look equal
+def test_psnr_is_infinite_only_without_any_error(psnr, rmse, text):
+    assert formats.decibels(psnr, rmse) == text
 
 
 def test_mebibytes_are_binary():

@@ -147,6 +147,16 @@ def test_saved_charts_exist_as_png_and_svg_and_are_reproducible(tmp_path):
     assert first == {p.name: p.read_bytes() for p in (tmp_path / "plots").iterdir()}
 
 
+def test_a_page_of_failed_cells_only_is_drawn(tmp_path):
+    write_cell(tmp_path, make_cell("aaa"))
+    for number in range(70):
+        cell = make_cell("zzz", parameters={"size": number})
+        write_cell(tmp_path, without_measurement(cell, "failed", "lost"))
+    section = section_of(tmp_path)
+    figure = draw(section, "frame-times", page=len(plots.paginate(section)) - 1)
+    assert len(figure.axes[0].texts) == 70 and not figure.axes[0].patches
+
+
 def test_no_chart_where_nothing_was_measured(tmp_path):
     write_cell(tmp_path, without_measurement(make_cell(), "failed", "lost"))
     assert plots.save_charts([section_of(tmp_path)], tmp_path / "plots") == [[]]
