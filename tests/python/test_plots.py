@@ -56,8 +56,9 @@ def section(request, tmp_path_factory):
     folder = make_results(tmp_path_factory.mktemp("results"), *request.param)
     method = "a method with a very long name and, for once, no result"
     write_cell(folder, without_measurement(make_cell("boxes", method), "failed", "lost"))
-    cell = make_cell("the cathedral of a town with a long name, at dusk", "blend")
-    write_cell(folder, cell)
+    for hour in ("dusk", "dawn"):
+        name = f"the cathedral of a town with a rather long name, seen from the hill in fog at {hour}"
+        write_cell(folder, make_cell(name, "blend"))
     return section_of(folder)
 
 
