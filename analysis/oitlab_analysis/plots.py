@@ -15,16 +15,14 @@ from pathlib import Path
 
 import matplotlib
 import numpy
+import pandas
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-matplotlib.use("Agg")  # no display is needed or looked for
-import matplotlib.pyplot as pyplot  # noqa: E402
-import pandas  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
-
-from . import formats  # noqa: E402
-from .sections import Section  # noqa: E402
+from . import formats
+from .sections import Section
 
 # Okabe and Ito's colours, told apart by all common forms of colour blindness; black is for text.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
@@ -161,7 +159,7 @@ def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]])
 
 def _axes(height: float) -> tuple[Figure, Axes]:
     """Axes of 6.5 inches by `height`, y downwards in inches."""
-    figure = pyplot.figure(figsize=(9, height + 1))
+    figure = Figure(figsize=(9, height + 1))
     axes = figure.add_axes((0.2, 0.5 / (height + 1), 6.5 / 9, height / (height + 1)))
     axes.set_ylim(height - BETWEEN_SETTINGS / 2, -BETWEEN_SETTINGS / 2)
     axes.tick_params(axis="y", length=0)
@@ -224,7 +222,7 @@ def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> F
     head, foot = 0.3, 0.3  # inches above and below the bars of a panel: title, tick labels
     panels = [(name, cells, len(cells) * BAR * 1.15 + 0.1) for name, cells in page]
     height = sum(head + bars + foot for _, _, bars in panels)
-    figure = pyplot.figure(figsize=(9, height))
+    figure = Figure(figsize=(9, height))
     top, all_axes = 0.0, []
     for name, cells, bars in panels:
         top += head
@@ -235,7 +233,7 @@ def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> F
     used = {c for _, cells, _ in panels for c in columns if cells[c].notna().any()}
     handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=stage_name(s))
                for s, (c, h) in styles.items() if s in used]
-    handles.append(pyplot.Line2D([], [], color="black", marker="|", markersize=9, linestyle="none",
+    handles.append(Line2D([], [], color="black", marker="|", markersize=9, linestyle="none",
                                  markeredgewidth=2, label="whole frame, separate run"))
     _legend(figure, all_axes[0], handles, head)
     _footer(all_axes[-1], "stage times, ms (medians)", section)
@@ -297,4 +295,3 @@ def _save(figure: Figure, path: Path) -> None:
     png, svg = path.with_name(path.name + ".png"), path.with_name(path.name + ".svg")
     figure.savefig(png, dpi=150, bbox_inches=box, facecolor="white")
     figure.savefig(svg, bbox_inches=box, facecolor="white", metadata={"Date": None})
-    pyplot.close(figure)

@@ -4,6 +4,7 @@ import itertools
 
 import matplotlib
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from oitlab_analysis import plots
 from oitlab_analysis.cells import collect
@@ -19,7 +20,7 @@ def section_of(folder):
 def draw(section, kind, page=0):
     with matplotlib.rc_context(plots.STYLE):
         figure = plots.DRAWN[kind][1](section, plots.paginate(section)[page])
-        figure.canvas.draw()
+        FigureCanvasAgg(figure).draw()
     return figure
 
 
@@ -65,9 +66,7 @@ def section(request, tmp_path_factory):
 @pytest.mark.parametrize("kind", ["frame-times", "stages"])
 def test_nothing_overlaps(section, kind):
     for page in range(len(plots.paginate(section))):
-        figure = draw(section, kind, page)
-        assert_nothing_overlaps(figure)
-        plots.pyplot.close(figure)
+        assert_nothing_overlaps(draw(section, kind, page))
 
 
 def test_pages_hold_every_cell_once(section):
