@@ -60,6 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
     except OSError as error:
         print(f"oitlab report: {error.filename}: {error.strerror}", file=sys.stderr)
         return EXIT_BAD_INPUT
+    sys.stdout.reconfigure(errors="replace")  # a terminal may know no ×
     try:
         print(result.text)
         for path in result.files:

@@ -78,7 +78,8 @@ def read_cell(path: Path) -> dict:
     if path.suffix != ".json" or path.name.startswith("."):
         raise NotACell("a temporary file of a running or killed run, or a foreign one")
     try:
-        cell = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
+        text = path.read_text(encoding="utf-8")
+        cell = json.loads(text, parse_constant=_refuse_constant, parse_int=_int_of_64_bits)
     except OSError as error:
         raise NotACell(f"cannot be read: {error.strerror}") from error
     except RecursionError as error:
@@ -89,12 +90,29 @@ def read_cell(path: Path) -> dict:
         raise NotACell("foreign JSON: it has no /schema")
     if cell["schema"] != SCHEMA:
         raise NotACell(f"/schema: found {cell['schema']!r}, wanted {SCHEMA}")
+    cell = _printable(cell)
     check_cell(cell)
     return cell
 
 
+def _printable(value: object) -> object:
+    """The same document with texts of one line each; numbers stay as they are."""
+    if isinstance(value, str):
+        return one_line(value)
+    if isinstance(value, dict):
+        return {one_line(key): _printable(child) for key, child in value.items()}
+    return value
+
+
 def _refuse_constant(name: str) -> None:
     raise ValueError(f"{name} is not a JSON number")
+
+
+def _int_of_64_bits(digits: str) -> int:
+    value = int(digits)
+    if abs(value) >= 2**64:
+        raise ValueError("a whole number of more than 64 bits")
+    return value
 
 
 def _get(cell: dict, pointer: str, wanted: str, good) -> object:
@@ -143,23 +161,27 @@ def _is_size(value: object) -> bool:
     return isinstance(value, list) and len(value) == 2 and all(type(v) is int for v in value)
 
 
+def _is_time(value: object) -> bool:
+    """A time in ms, less than a day."""
+    return is_number(value) and 0 < value < 24 * 3600 * 1000
+
+
 def _is_interval(value: object) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(is_number(v) for v in value)
+    return isinstance(value, list) and len(value) == 2 and all(_is_time(v) for v in value)
 
 
-def _is_positive_list(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and all(is_number(v) and v > 0 for v in value)
+def _is_times(value: object) -> bool:
+    return isinstance(value, list) and bool(value) and all(_is_time(v) for v in value)
 
 
 def check_cell(cell: dict) -> None:
     """Checks everything that the report uses. Raises NotACell with a JSON pointer."""
     _get(cell, "/status", "ok, failed or skipped", lambda v: v in STATUSES)
-    for pointer in ("id", "experiment", "reason", "group", "view", "format", "method"):
+    for pointer in ("id", "experiment", "view", "format", "method", "scene/name", "device/name"):
+        _get(cell, f"/{pointer}", "a name", lambda v: isinstance(v, str) and v.strip() != "")
+    for pointer in ("reason", "group", "device/type", "device/driver", "provenance/commit"):
         _get(cell, f"/{pointer}", "text", _is_text)
-    for pointer in ("scene/name", "device/name", "device/type", "device/driver"):
-        _get(cell, f"/{pointer}", "text", _is_text)
-    for pointer in ("provenance/commit", "provenance/build"):
-        _get(cell, f"/{pointer}", "text", _is_text)
+    _get(cell, "/provenance/build", "text", _is_text)
     _get(cell, "/provenance/validation", "true or false", lambda v: isinstance(v, bool))
     _get(cell, "/size", "[width, height]", _is_size)
     _get(cell, "/parameters", "an object of plain values", _is_flat)
@@ -175,14 +197,14 @@ def check_cell(cell: dict) -> None:
     if cell["status"] != "ok":
         return
     for key in FRAME_STATISTICS:
-        _get(cell, f"/statistics/frame/{key}", "a number", is_number)
-    _get(cell, "/statistics/frame/median", "a time above 0", lambda v: v > 0)
+        _get(cell, f"/statistics/frame/{key}", "a time in ms above 0", _is_time)
     _get(cell, "/statistics/frame/count", "a whole number", lambda v: type(v) is int)
     _get(cell, "/statistics/frame/ci95", "[low, high]", _is_interval)
-    times = _get(cell, "/samples/frame_ms", "a list of times above 0", _is_positive_list)
+    times = _get(cell, "/samples/frame_ms", "a list of times in ms above 0", _is_times)
     _get(cell, "/samples/block", f"a list of {len(times)} block numbers",
          lambda v: isinstance(v, list) and len(v) == len(times) and all(type(b) is int for b in v))
-    _get(cell, "/gpu_ms/stages", "an object of numbers", _is_numbers)
+    _get(cell, "/gpu_ms/stages", "an object of times in ms",
+         lambda v: isinstance(v, dict) and all(t == 0 or _is_time(t) for t in v.values()))
     _get(cell, "/counters", "an object of numbers", _is_numbers)
     _get(cell, "/memory_bytes/total", "a number", is_number)
     _get(cell, "/memory_bytes/buffers", "an object of numbers", _is_numbers)
@@ -195,13 +217,16 @@ def check_cell(cell: dict) -> None:
 
 
 def as_table(cells: dict[str, dict]) -> pandas.DataFrame:
-    """One row per cell, in the order of the file names; columns that no cell has are absent."""
+    """One row per cell, in the order of the file names; columns that no cell has are absent.
+
+    Stages keep the order in which the cells list them, which is that in which they run.
+    """
     rows = pandas.DataFrame([flatten(cell) for cell in cells.values()])
     fixed = [name for name in rows.columns if "." not in name or name.startswith("frame_ms.")]
-    families = ("param.", "quality.", "counter.", "stage.", "memory.", "stop.")
+    families = ("param.", "quality.", "counter.", "memory.", "stop.")
     open_ended = [
         name for family in families for name in sorted(rows.columns) if name.startswith(family)
-    ]
+    ] + [name for name in rows.columns if name.startswith("stage.")]
     return rows[fixed + open_ended]
 
 

@@ -22,7 +22,8 @@ def decimals_for(value: float, digits: int = 3) -> int:
     """Decimals that show `digits` significant digits; whole numbers are never rounded to tens."""
     if value == 0:
         return 0
-    return max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = float(f"{abs(value):.{digits - 1}e}")  # 9.996 is shown as 10.0, not as 10.00
+    return max(0, digits - 1 - math.floor(math.log10(rounded)))
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -73,23 +74,21 @@ def share(value: float | None) -> str:
     return f"{number(value * 100)} %"
 
 
-def decibels(value: float | None, scored: bool) -> str:
-    """PSNR in dB. A scored image without a PSNR is equal to its reference (infinite PSNR)."""
-    if not scored:
-        return NOTHING
-    return number(value) if is_number(value) else "∞ (equal)"
+def decibels(psnr: float | None, rmse: float | None) -> str:
+    """PSNR in dB. It is infinite, written as null, where the image equals its reference."""
+    return "∞ (equal)" if not is_number(psnr) and rmse == 0 else number(psnr)
 
 
 def parameter(value: object) -> str:
     """A parameter's value as one would type it."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    return f"{value:g}" if isinstance(value, float) else one_line(str(value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def one_line(text: str) -> str:
-    """Text on one line without control characters, so that it can't upset a terminal or a table."""
-    return "".join(c for c in re.sub(r"\s+", " ", text).strip() if c.isprintable())
+    """Text without line breaks and control characters: it can't upset a terminal or a table."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def natural_key(text: str) -> list[tuple[bool, object]]:

@@ -7,21 +7,22 @@ what is drawn, so that a legend covers no bar.
 
 from __future__ import annotations
 
+import math
 import textwrap
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+import numpy
+import pandas
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-matplotlib.use("Agg")  # no display is needed or looked for
-import matplotlib.pyplot as pyplot  # noqa: E402
-import pandas  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
-
-from . import formats  # noqa: E402
-from .sections import Section  # noqa: E402
+from . import formats
+from .sections import Section
 
 # Okabe and Ito's colours, told apart by all common forms of colour blindness; black is for text.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
@@ -33,11 +34,18 @@ STYLE = {
     "hatch.linewidth": 0.5,
     "svg.hashsalt": "oitlab",  # the same file for the same data
     "axes.axisbelow": True,
+    "text.parse_math": False,  # a $ in a name is a $
 }
 LOG_ABOVE = 30
 BARS_PER_CHART = 60
+FEW_CHARTS = 4
 BAR, BETWEEN_SETTINGS, LINE = 0.19, 0.2, 0.155  # inches
 LABEL_CHARACTERS = 26
+FRAME_CAPTION = "Frame times: medians with their 95% intervals."
+STAGE_CAPTION = (
+    "Stage times: medians of a separate run with timers between the stages, which change what they "
+    "time. The mark is the whole frame, measured without them."
+)
 
 
 @dataclass(frozen=True)
@@ -48,47 +56,54 @@ class Chart:
     caption: str
 
 
-def save_charts(section: Section, number: int, folder: Path) -> list[Chart]:
-    """Draws the charts of a section; long ones are spread over several files."""
-    measured = section.table[section.table["status"] == "ok"]
-    if measured.empty:
-        return []
+def save_charts(sections: list[Section], folder: Path) -> list[list[Chart]]:
+    """Draws the charts of each section; long ones are spread over several files."""
     folder.mkdir(exist_ok=True)
-    charts = []
+    tasks = [
+        (section, number, kind, page)
+        for number, section in enumerate(sections, 1)
+        if (section.table["status"] == "ok").any()
+        for kind in DRAWN
+        for page in range(len(paginate(section)))
+    ]
+    if len(tasks) > FEW_CHARTS:
+        # A chart takes about a second, and matplotlib does not run in threads.
+        with ProcessPoolExecutor() as pool:
+            charts = list(pool.map(_save_chart, tasks, [folder] * len(tasks)))
+    else:
+        charts = [_save_chart(task, folder) for task in tasks]
+    return [
+        [chart for task, chart in zip(tasks, charts) if chart and task[0] is section]
+        for section in sections
+    ]
+
+
+def _save_chart(task: tuple[Section, int, str, int], folder: Path) -> Chart | None:
+    section, number, kind, index = task
+    caption, draw = DRAWN[kind]
+    pages = paginate(section)
     with matplotlib.rc_context(STYLE):
-        pages = paginate(section)
-        for index, page in enumerate(pages):
-            part = f" ({index + 1} of {len(pages)})" if len(pages) > 1 else ""
-            suffix = f"-{index + 1}" if len(pages) > 1 else ""
-            name = f"frame-times-{number}{suffix}"
-            _save(draw_frame_times(section, page), folder / name)
-            charts.append(Chart(name, f"Frame times{part}: medians with 95% intervals."))
-        for index, page in enumerate(pages):
-            part = f" ({index + 1} of {len(pages)})" if len(pages) > 1 else ""
-            suffix = f"-{index + 1}" if len(pages) > 1 else ""
-            page = [(name, cells[cells[stage_columns(cells)].notna().any(axis=1)])
-                    for name, cells in page]
-            page = [(name, cells) for name, cells in page if not cells.empty]
-            if not page:
-                continue
-            name = f"stages-{number}{suffix}"
-            _save(draw_stages(section, page), folder / name)
-            charts.append(Chart(name, f"Stages{part}: medians of a separate run with timers between "
-                                      "the stages, which change what they time; the mark is the "
-                                      "whole frame without them."))
-    return charts
+        figure = draw(section, pages[index])
+        if figure is None:
+            return None
+        name = f"{kind}-{number}" + (f"-{index + 1}" if len(pages) > 1 else "")
+        _save(figure, folder / name)
+    part = f" Chart {index + 1} of {len(pages)}." if len(pages) > 1 else ""
+    return Chart(name, caption + part)
 
 
 def stage_columns(table: pandas.DataFrame) -> list[str]:
-    return [name for name in table.columns if name.startswith("stage.")]
+    """The stages that some cell of the table has, in the order in which they run."""
+    return [c for c in table.columns if c.startswith("stage.") and table[c].notna().any()]
 
 
 def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
-    """The settings of a section in charts of at most about 60 bars each."""
+    """The settings of a section in charts of about equal length, at most about 60 bars each."""
     pages: list[list] = [[]]
     bars = 0
+    most = len(section.table) / math.ceil(len(section.table) / BARS_PER_CHART)
     for name, cells in section.settings():
-        if pages[-1] and bars + len(cells) > BARS_PER_CHART:
+        if pages[-1] and bars + len(cells) / 2 > most:
             pages.append([])
             bars = 0
         pages[-1].append((name, cells))
@@ -97,7 +112,11 @@ def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
 
 
 def method_styles(table: pandas.DataFrame) -> dict[str, tuple[str, str]]:
-    """Label -> colour and hatch. One colour a method, another hatch for each of its variants."""
+    """Label -> colour and hatch, for what was measured.
+
+    One colour a method, another hatch for each of its variants.
+    """
+    table = table[table["status"] == "ok"]
     methods = list(dict.fromkeys(table.sort_values("method", kind="stable")["method"]))
     methods.sort(key=lambda method: method != "blend")
     labels = list(dict.fromkeys(zip(table["method"], table["label"])))
@@ -122,8 +141,12 @@ def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]])
         y += height + BETWEEN_SETTINGS
     figure, axes = _axes(y)
     low, high = _set_time_axis(axes, section.table)
-    for position, row in rows:
-        _draw_bar(axes, position, row, styles[row["label"]], low)
+    for label, style in styles.items():
+        measured = [(y, row) for y, row in rows if (row["status"], row["label"]) == ("ok", label)]
+        if measured:
+            _draw_bars(axes, measured, style, low)
+    for y, row in rows:
+        _write_beside(axes, y, row, low)
     axes.set_yticks(middles, names)
     shown = {row["label"] for _, row in rows}
     handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=name)
@@ -136,7 +159,7 @@ def draw_frame_times(section: Section, page: list[tuple[str, pandas.DataFrame]])
 
 def _axes(height: float) -> tuple[Figure, Axes]:
     """Axes of 6.5 inches by `height`, y downwards in inches."""
-    figure = pyplot.figure(figsize=(9, height + 1))
+    figure = Figure(figsize=(9, height + 1))
     axes = figure.add_axes((0.2, 0.5 / (height + 1), 6.5 / 9, height / (height + 1)))
     axes.set_ylim(height - BETWEEN_SETTINGS / 2, -BETWEEN_SETTINGS / 2)
     axes.tick_params(axis="y", length=0)
@@ -160,33 +183,46 @@ def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> tuple[float, float]:
     return low, high
 
 
-def _draw_bar(
-    axes: Axes, y: float, row: pandas.Series, style: tuple[str, str], low: float
+def _draw_bars(
+    axes: Axes, rows: list[tuple[float, pandas.Series]], style: tuple[str, str], low: float
 ) -> None:
-    colour, hatch = style
-    if row["status"] != "ok":
-        axes.annotate(f"{row['label']}: {row['status']}", (low, y), (3, 0),
-                      textcoords="offset points", va="center", size=7, style="italic")
-        return
-    median = row["frame_ms.median"]
-    axes.barh(y, median - low, BAR * 0.92, low, color=colour, hatch=hatch,
-              edgecolor="black", linewidth=0.5)
-    ends = row["frame_ms.ci_low"], row["frame_ms.ci_high"]
-    axes.plot(ends, (y, y), color="black", linewidth=1.2, solid_capstyle="butt")
-    axes.plot(ends, (y, y), color="black", marker="|", markersize=5, linestyle="none")
-    axes.annotate(formats.number(median), (max(median, ends[1]), y), (4, 0),
-                  textcoords="offset points", va="center", size=7)
+    """All bars of one method with their intervals, in one go: an artist each would be slow."""
+    heights = [y for y, _ in rows]
+    medians, lower, upper = (
+        [row[f"frame_ms.{key}"] for _, row in rows] for key in ("median", "ci_low", "ci_high")
+    )
+    axes.barh(heights, [median - low for median in medians], BAR * 0.92, low, color=style[0],
+              hatch=style[1], edgecolor="black", linewidth=0.5)
+    axes.hlines(heights, lower, upper, color="black", linewidth=1.2)
+    for ends in (lower, upper):
+        axes.plot(ends, heights, color="black", marker="|", markersize=5, linestyle="none")
 
 
-def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> Figure:
-    """One panel per setting with an axis of its own, so that a fast scene is not lost."""
-    columns = [c for c in stage_columns(section.table) if section.table[c].notna().any()]
+def _write_beside(axes: Axes, y: float, row: pandas.Series, low: float) -> None:
+    """The median right of its bar; where there is none, why."""
+    text, x = f"{row['label']}: {row['status']}", low
+    if row["status"] == "ok":
+        median = row["frame_ms.median"]
+        text, x = formats.number(median), max(median, row["frame_ms.ci_high"])
+    axes.annotate(text, (x, y), (4, 0), textcoords="offset points", va="center", size=7)
+
+
+def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> Figure | None:
+    """One panel per setting with an axis of its own, so that a fast scene is not lost.
+
+    None if no cell of the page has stage times.
+    """
+    columns = stage_columns(section.table)
+    page = [(name, cells[cells[columns].notna().any(axis=1)]) for name, cells in page]
+    page = [(name, cells) for name, cells in page if not cells.empty]
+    if not page:
+        return None
     styles = {c: (COLOURS[i % len(COLOURS)], HATCHES[i % len(HATCHES)])
               for i, c in enumerate(columns)}
-    head, foot = 0.35, 0.35  # inches above and below the bars of a panel: title, tick labels
-    panels = [(name, cells, len(cells) * BAR * 1.3 + 0.1) for name, cells in page]
+    head, foot = 0.3, 0.3  # inches above and below the bars of a panel: title, tick labels
+    panels = [(name, cells, len(cells) * BAR * 1.15 + 0.1) for name, cells in page]
     height = sum(head + bars + foot for _, _, bars in panels)
-    figure = pyplot.figure(figsize=(9, height))
+    figure = Figure(figsize=(9, height))
     top, all_axes = 0.0, []
     for name, cells, bars in panels:
         top += head
@@ -197,7 +233,7 @@ def draw_stages(section: Section, page: list[tuple[str, pandas.DataFrame]]) -> F
     used = {c for _, cells, _ in panels for c in columns if cells[c].notna().any()}
     handles = [Patch(facecolor=c, hatch=h, edgecolor="black", linewidth=0.5, label=stage_name(s))
                for s, (c, h) in styles.items() if s in used]
-    handles.append(pyplot.Line2D([], [], color="black", marker="|", markersize=9, linestyle="none",
+    handles.append(Line2D([], [], color="black", marker="|", markersize=9, linestyle="none",
                                  markeredgewidth=2, label="whole frame, separate run"))
     _legend(figure, all_axes[0], handles, head)
     _footer(all_axes[-1], "stage times, ms (medians)", section)
@@ -211,15 +247,16 @@ def stage_name(column: str) -> str:
 def _draw_stage_panel(
     axes: Axes, name: str, cells: pandas.DataFrame, styles: dict[str, tuple[str, str]]
 ) -> None:
-    for y, (_, row) in enumerate(cells.iterrows()):
-        start = 0.0
-        for column, (colour, hatch) in styles.items():
-            if formats.is_number(row[column]):
-                axes.barh(y, row[column], 0.7, start, color=colour, hatch=hatch,
-                          edgecolor="black", linewidth=0.5)
-                start += row[column]
-        axes.plot(row["frame_ms.median"], y, color="black", marker="|", markersize=12,
-                  markeredgewidth=2, linestyle="none")
+    rows = numpy.arange(len(cells))
+    starts = numpy.zeros(len(cells))
+    for column, (colour, hatch) in styles.items():
+        has = cells[column].notna().to_numpy()
+        widths = cells[column].to_numpy(dtype=float)[has]
+        axes.barh(rows[has], widths, 0.7, starts[has], color=colour, hatch=hatch,
+                  edgecolor="black", linewidth=0.5)
+        starts[has] += widths
+    axes.plot(cells["frame_ms.median"], rows, color="black", marker="|", markersize=12,
+              markeredgewidth=2, linestyle="none")
     axes.set_ylim(len(cells) - 0.45, -0.55)
     axes.set_xlim(left=0)
     axes.set_yticks(range(len(cells)), [textwrap.shorten(n, 40) for n in cells["label"]])
@@ -231,7 +268,7 @@ def _draw_stage_panel(
 
 def _legend(figure: Figure, axes: Axes, handles: list, above: float = 0.0) -> None:
     """A legend right above the axes, `above` inches up, in as many columns as fit."""
-    longest = max(len(handle.get_label()) for handle in handles)
+    longest = max((len(handle.get_label()) for handle in handles), default=0)
     height = axes.get_position().height * figure.get_figheight()
     axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0, 1 + above / height),
                 borderaxespad=0.3, ncol=max(1, min(len(handles), 100 // (longest + 7))), frameon=False,
@@ -240,14 +277,21 @@ def _legend(figure: Figure, axes: Axes, handles: list, above: float = 0.0) -> No
 
 def _footer(axes: Axes, text: str, section: Section) -> None:
     """The axis title, and below it what the chart was measured on: charts get copied around."""
-    source = textwrap.fill(f"{section.title} · commit {section.context['Commit']}", 110)
-    axes.set_xlabel(f"{text}\n{source}", size=8)
+    commit = f"commit {section.context['Commit']}"
+    source = section.title if commit in section.title else f"{section.title}, {commit}"
+    axes.set_xlabel(f"{text}\n{textwrap.fill(source, 110)}", size=8)
+
+
+DRAWN = {
+    "frame-times": (FRAME_CAPTION, draw_frame_times),
+    "stages": (STAGE_CAPTION, draw_stages),
+}
 
 
 def _save(figure: Figure, path: Path) -> None:
     """Writes PNG and SVG without a date, so that the same data gives the same files."""
-    figure.savefig(path.with_name(path.name + ".png"), dpi=150, bbox_inches="tight",
-                   facecolor="white", pad_inches=0.12)
-    figure.savefig(path.with_name(path.name + ".svg"), bbox_inches="tight", facecolor="white",
-                   pad_inches=0.12, metadata={"Date": None})
-    pyplot.close(figure)
+    # What bbox_inches="tight" does, but laid out once for both files: layout is the slow part.
+    box = figure.get_tightbbox().padded(0.12)
+    png, svg = path.with_name(path.name + ".png"), path.with_name(path.name + ".svg")
+    figure.savefig(png, dpi=150, bbox_inches=box, facecolor="white")
+    figure.savefig(svg, bbox_inches=box, facecolor="white", metadata={"Date": None})

@@ -14,7 +14,7 @@ from . import formats, images, plots
 from .cells import Collection, Problem, collect
 from .labels import parameter_text, parameters_of
 from .sections import Section, add_comparisons, make_sections, mixture_warnings
-from .table import describe, error_caption, markdown_table, markdown_text, setting_heading, terminal_table
+from .table import describe, error_caption, markdown_table, markdown_text, setting_heading, terminal_table, terminal_warnings
 
 MOST_NAMED = 20  # files, commands: beyond these a count says enough
 
@@ -45,29 +45,29 @@ def make_report(folder: Path) -> Result:
     collection = collect(folder)
     table = add_comparisons(collection.table, collection.cells)
     sections = make_sections(collection, table)
-    warnings = mixture_warnings(table) + problem_lines(collection.problems)
-    charts = [plots.save_charts(s, i + 1, folder / "plots") for i, s in enumerate(sections)]
+    notes = mixture_warnings(table) + left_out(collection.problems)
+    charts = plots.save_charts(sections, folder / "plots")
 
     csv, markdown, html = folder / "cells.csv", folder / "report.md", folder / "report.html"
     table.to_csv(csv, index=False)
-    markdown.write_text(markdown_report(collection, sections, charts, warnings), encoding="utf-8")
-    html.write_text(html_report(collection, sections, charts, warnings), encoding="utf-8")
+    markdown.write_text(markdown_report(collection, sections, charts, notes), encoding="utf-8")
+    html.write_text(html_report(collection, sections, charts, notes), encoding="utf-8")
 
     blocks = [terminal_table(section) for section in sections]
-    blocks.append("\n".join([*(f"warning: {line}" for line in warnings), summary(table) + "."]))
+    blocks.append(terminal_warnings(notes) + f"{summary(table)}.")
     text = "\n\n".join(blocks) + "\n"
     return Result(text, [html, markdown, csv], bool((table["status"] == "failed").any()))
 
 
-def problem_lines(problems: list[Problem]) -> list[str]:
-    """One line for each file that was left out."""
+def left_out(problems: list[Problem]) -> list[str]:
+    """What is said of the files that were left out: how many, and the first of them by name."""
     if not problems:
         return []
-    lines = [f"{len(problems)} file(s) in cells/ were left out of this report:"]
-    lines += [f"cells/{formats.one_line(p.file)}: {p.reason}" for p in problems[:MOST_NAMED]]
+    named = [f"{formats.one_line(p.file)}: {p.reason}" for p in problems[:MOST_NAMED]]
     if len(problems) > MOST_NAMED:
-        lines.append(f"and {len(problems) - MOST_NAMED} more.")
-    return lines
+        named.append(f"and {len(problems) - MOST_NAMED} more")
+    files = "file in cells/ was" if len(problems) == 1 else "files in cells/ were"
+    return [f"{len(problems)} {files} left out: {'; '.join(named)}."]
 
 
 def summary(table: pandas.DataFrame) -> str:
@@ -80,6 +80,12 @@ def summary(table: pandas.DataFrame) -> str:
 def title(sections: list[Section]) -> str:
     experiments = dict.fromkeys(section.context["Experiment"] for section in sections)
     return "oitlab: " + ", ".join(experiments)
+
+
+def all_parameters(section: Section) -> dict[str, str]:
+    """Every method of a section, by its label in the tables, with all its parameters."""
+    rows = section.table.drop_duplicates("label")
+    return {row["label"]: parameter_text(parameters_of(row)) or "none" for _, row in rows.iterrows()}
 
 
 def unmeasured(section: Section) -> list[dict[str, str]]:
@@ -99,7 +105,7 @@ def unmeasured(section: Section) -> list[dict[str, str]]:
 
 def commands(collection: Collection, section: Section) -> list[str]:
     """The commands that were run, and the one that makes this report."""
-    shown = [formats.one_line(command) for command in section.commands[:MOST_NAMED]]
+    shown = section.commands[:MOST_NAMED]
     if len(section.commands) > MOST_NAMED:
         shown.append(f"# and {len(section.commands) - MOST_NAMED} more: column command of cells.csv")
     return [*shown, f"oitlab report {shlex.quote(str(collection.folder))}"]
@@ -115,7 +121,9 @@ def markdown_report(
         lines += [f"## {markdown_text(section.title)}", ""]
         lines += [f"> **Warning.** {markdown_text(w)}\n" for w in section.warnings]
         lines += [f"- {name}: {markdown_text(text)}" for name, text in section.context.items()]
-        lines += ["", markdown_table(section), ""]
+        lines += ["", markdown_table(section), "", "All parameters:", ""]
+        lines += [f"- {markdown_text(m)}: {markdown_text(p)}" for m, p in all_parameters(section).items()]
+        lines += [""]
         for chart in section_charts:
             lines += [f"![{markdown_text(chart.caption)}](plots/{chart.name}.png)", ""]
         lines += _markdown_images(section) + _markdown_unmeasured(section)
@@ -176,6 +184,7 @@ def html_report(
                 "context": section.context,
                 "warnings": section.warnings,
                 "rows": [_html_row(row) for _, row in section.table.iterrows()],
+                "parameters": all_parameters(section),
                 "charts": [_html_chart(collection.folder, chart) for chart in section_charts],
                 "pictures": _html_pictures(section, previews),
                 "unmeasured": unmeasured(section),
@@ -196,7 +205,7 @@ def _html_row(row: pandas.Series) -> dict[str, object]:
             (row["scene_label"], row["scene_label"], parameter_text(scene_facts(row))),
             (row["view"], row["view"], ""),
             (row["size_label"], row["width"] * row["height"], ""),
-            (row["label"], row["label"], parameter_text(parameters_of(row)) or "no parameters"),
+            (row["label"], row["label"], ""),
         ],
         "figures": [
             (name, texts.get(name, formats.NOTHING), _sort_value(row, column))
@@ -214,8 +223,8 @@ def scene_facts(row: pandas.Series) -> dict[str, object]:
 def _sort_value(row: pandas.Series, column: str) -> object:
     """What the column sorts by; empty goes last. An infinite PSNR is the greatest."""
     value = row.get(column)
-    if column == "quality.psnr" and formats.is_number(row.get("quality.rmse")):
-        return value if formats.is_number(value) else "Infinity"
+    if column == "quality.psnr" and not formats.is_number(value) and row.get("quality.rmse") == 0:
+        return "Infinity"
     return value if formats.is_number(value) or isinstance(value, str) else ""
 
 

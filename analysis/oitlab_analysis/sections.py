@@ -61,7 +61,9 @@ def make_sections(collection: Collection, table: pandas.DataFrame) -> list[Secti
     groups = [group for _, group in table.groupby(list(CONTEXT), dropna=False)]
     groups.sort(key=lambda group: (group["experiment"].iloc[0], -len(group)))
     # Only the parts of the context that differ are needed to tell titles apart.
-    varying = [c for c in ("commit", "build", "validation", "driver_info") if table[c].nunique() > 1]
+    varying = [c for c in ("commit", "build", "validation") if table[c].nunique() > 1]
+    if (table.groupby("device")["driver_info"].nunique() > 1).any():
+        varying.append("driver_info")
     return [_section(collection, group, varying) for group in groups]
 
 
@@ -71,7 +73,7 @@ def _section(collection: Collection, group: pandas.DataFrame, varying: list[str]
         "commit": f"commit {first['commit']}",
         "build": f"{first['build'] or 'unnamed'} build",
         "validation": f"validation {'on' if first['validation'] else 'off'}",
-        "driver_info": first["driver_info"],
+        "driver_info": f"driver {first['driver_info']}",
     }
     title = ", ".join([f"{first['experiment']} on {first['device']}", *(said[c] for c in varying)])
     dates = sorted(date for date in group["date"] if date)
@@ -85,7 +87,7 @@ def _section(collection: Collection, group: pandas.DataFrame, varying: list[str]
         "Commit": first["commit"],
         "Build": first["build"] or NOTHING,
         "Validation layers": "on" if first["validation"] else "off",
-        "Measured": f"{dates[0]} to {dates[-1]}" if dates else NOTHING,
+        "Measured": " to ".join(dict.fromkeys((dates[0], dates[-1]))) if dates else NOTHING,
         "Seeds": ", ".join(sorted({f"{seed:g}" for seed in group["seed"].dropna()})) or NOTHING,
     }
     measured = [collection.cells[i] for i in group.loc[group["status"] == "ok", "id"]]

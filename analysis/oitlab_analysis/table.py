@@ -17,18 +17,17 @@ TERMINAL_WIDTH = 100
 def describe(row: pandas.Series) -> dict[str, str]:
     """The figures of one cell as text, by the names that the tables use."""
     if row["status"] != "ok":
-        return {"frame": row["status"], "reason": formats.one_line(row["reason"]) or "no reason given"}
+        return {"frame": row["status"], "reason": row["reason"].strip() or "no reason given"}
     frame = formats.with_interval(
         row["frame_ms.median"], row["frame_ms.ci_low"], row["frame_ms.ci_high"]
     )
     ratio = formats.with_interval(row["ratio"], row["ratio.low"], row["ratio.high"])
-    scored = formats.is_number(row.get("quality.rmse"))
     return {
         "frame": frame + (" †" if row.get("stop.reason") in UNSETTLED else ""),
         "ratio": "1" if row["verdict"] == "baseline" else ratio,
         "verdict": row["verdict"],
         "rmse": formats.number(row.get("quality.rmse")),
-        "psnr": formats.decibels(row.get("quality.psnr"), scored),
+        "psnr": formats.decibels(row.get("quality.psnr"), row.get("quality.rmse")),
         "pixels_off": formats.share(row.get("quality.pixels_off")),
         "fragments": formats.count(row.get("counter.fragments")),
         "memory": formats.mebibytes(row["memory_total_bytes"]),
@@ -41,9 +40,9 @@ def error_caption(row: pandas.Series) -> str:
     if not formats.is_number(row.get("quality.rmse")):
         return "not compared with a reference"
     texts = describe(row)
-    if not formats.is_number(row.get("quality.psnr")):
+    if row["quality.rmse"] == 0:
         return "equal to the reference"
-    return f"RMSE {texts['rmse']}, PSNR {texts['psnr']} dB, {texts['pixels_off']} of pixels off"
+    return f"RMSE {texts['rmse']}, PSNR {texts['psnr']} dB, pixels off: {texts['pixels_off']}"
 
 
 # Column head, name in describe(), width in characters, right-aligned. With two spaces between
@@ -60,15 +59,24 @@ TERMINAL_COLUMNS = (
 
 def terminal_table(section: Section) -> str:
     """Aligned text, one block of lines per setting, at most 100 columns wide."""
-    lines = textwrap.wrap(formats.one_line(section.title), TERMINAL_WIDTH)
-    for warning in section.warnings:
-        lines += textwrap.wrap(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ")
+    lines = textwrap.wrap(section.title, TERMINAL_WIDTH)
+    lines += terminal_warnings(section.warnings).splitlines()
     head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
     for _, cells in section.settings():
         lines += ["", *textwrap.wrap(setting_heading(cells), TERMINAL_WIDTH), head.rstrip()]
         for _, row in cells.iterrows():
             lines += _terminal_rows(row)
     return "\n".join(lines)
+
+
+def terminal_warnings(warnings: list[str]) -> str:
+    """Warnings as lines of at most 100 characters, or nothing."""
+    lines = [
+        textwrap.fill(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ",
+                      break_on_hyphens=False)
+        for warning in warnings
+    ]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def setting_heading(cells: pandas.DataFrame) -> str:
@@ -78,14 +86,14 @@ def setting_heading(cells: pandas.DataFrame) -> str:
     triangles = cells["triangles"].max()  # failed cells may not know it
     if formats.is_number(triangles):
         parts.append(f"{formats.count(triangles)} triangles")
-    return formats.one_line(" · ".join(parts))
+    return " · ".join(parts)
 
 
 def _terminal_rows(row: pandas.Series) -> list[str]:
     """One cell; a label that is too long goes on in the next line, nothing is cut off."""
     texts = describe(row)
     width = TERMINAL_COLUMNS[0][2]
-    names = textwrap.wrap(formats.one_line(row["label"]), width, subsequent_indent="  ")
+    names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
     if row["status"] != "ok":
         reason = textwrap.wrap(f"{row['status']}: {texts['reason']}", TERMINAL_WIDTH - width - 2)
         height = max(len(names), len(reason))
@@ -118,7 +126,7 @@ MARKDOWN_COLUMNS = (
 
 def markdown_text(text: str) -> str:
     """Text that Markdown shows as it is, also inside a table."""
-    text = formats.one_line(text).replace("&", "&amp;").replace("<", "&lt;")
+    text = text.replace("&", "&amp;").replace("<", "&lt;")
     for character in "\\`*_[]|#":
         text = text.replace(character, "\\" + character)
     return text
