@@ -99,7 +99,10 @@ std::vector<DeviceInfo> Device::listDevices() {
 
 std::vector<std::string> Device::missingBaseline(const DeviceInfo& info) {
   std::vector<std::string> missing;
-  if (info.features.empty()) return {fmt::format("Vulkan 1.3 (it has {})", info.apiVersion)};
+  if (info.features.empty()) {
+    missing.push_back(fmt::format("Vulkan 1.3 (it has {})", info.apiVersion));
+    return missing;
+  }
   FeatureChain chain;
   for (const NamedFeature& feature : namedFeatures(chain))
     if (feature.baseline && !info.has(feature.name)) missing.push_back(feature.name);
