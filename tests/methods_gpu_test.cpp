@@ -99,6 +99,7 @@ TEST_F(Methods, ReferenceSortsThousandsOfLayers) {
   const Scene scene = triangleScene(layers, colors, frontCamera());
   RenderFixture fixture(scene, 8, 8);
   const auto exact = fixture.render("reference");
+  EXPECT_EQ(exact.frame.counters.at("fragments"), 3000u * 64);
   EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 3000u);
   const auto sorted = fixture.render("blend", {{"order", "sorted"}});
   // Back to front in float32 rounds 3,000 times in another order.
@@ -119,7 +120,7 @@ TEST_F(Methods, TessellatedSheetCoversEveryPixelOnce) {
       triangles.push_back({corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)});
     }
   RenderFixture fixture(triangleScene(triangles, {{1, 1, 1, 0.5f}}, frontCamera()), 101, 67);
-  for (const float tilt : {0.0f, 0.4f, 0.9f}) {
+  for (const float tilt : {0.0f, 0.2f, 0.4f}) {
     Camera camera = frontCamera();
     camera.eye = {tilt, 0.3f * tilt, 1.0f};
     const auto exact = fixture.render("reference", {}, camera);

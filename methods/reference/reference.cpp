@@ -17,6 +17,7 @@ class Reference : public Method {
         device, {.fragmentShader = "reference/capture.frag", .depthFormat = Target::depthFormat});
     resolve_ = Pipeline::compute(device, "reference/resolve.comp",
                                  {{"TARGET_FORMAT", formatName(target.format())}});
+    runs_ = Buffer(device, memory_, "sort state", pixels_ * sizeof(std::uint32_t));
     heads_ = Buffer(device, memory_, "list heads", pixels_ * sizeof(std::uint32_t));
     counters_ = Buffer(device, memory_, "counters", sizeof(ListCounters));
     readback_ =
@@ -26,8 +27,14 @@ class Reference : public Method {
 
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
-    const ListPush push{frame.constants, nodes_.address(), heads_.address(), counters_.address(),
-                        capacity_};
+    ListPush push{frame.constants,
+                  nodes_.address(),
+                  heads_.address(),
+                  counters_.address(),
+                  runs_.address(),
+                  capacity_,
+                  0,
+                  rounds_};
     frame.stage("clear", [&] {
       fillBuffer(frame.commands, heads_, LIST_END);
       fillBuffer(frame.commands, counters_, 0);
@@ -43,9 +50,11 @@ class Reference : public Method {
     });
     frame.stage("resolve", [&] {
       resolve_.bind(frame.commands, frame.bindings);
-      resolve_.push(frame.commands, push);
-      frame.dispatchPixels();
-      frame.barrier(Stage::eComputeShader, Stage::eTransfer);
+      for (push.round = 0; push.round < rounds_; ++push.round) {
+        resolve_.push(frame.commands, push);
+        frame.dispatchPixels();
+        frame.barrier(Stage::eComputeShader, Stage::eComputeShader | Stage::eTransfer);
+      }
       frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
                                 vk::BufferCopy(0, 0, sizeof(ListCounters)));
       frame.barrier(Stage::eTransfer, Stage::eHost);
@@ -60,6 +69,16 @@ class Reference : public Method {
       allocateNodes(counters.fragments + counters.fragments / 16ull);
       return {.recordAgain = true};
     }
+    if (counters.unfinished > 0) {
+      rounds_ *= 2;
+      return {.recordAgain = true};
+    }
+    // Nothing is lost in silence, not even to a device that leaves loops early.
+    if (counters.resolved != counters.fragments)
+      fail<DeviceError>(
+          "reference: {} fragments were captured and {} blended: {} does not carry out "
+          "the shader's loops in full (a pixel may be too deep for it)",
+          counters.fragments, counters.resolved, device_->info().name);
     return {.counters = {{"fragments", counters.fragments},
                          {"max_fragments_per_pixel", counters.deepest},
                          {"covered_pixels", counters.coveredPixels}}};
@@ -79,8 +98,9 @@ class Reference : public Method {
   const Device* device_ = nullptr;
   std::uint64_t pixels_ = 0;
   std::uint32_t capacity_ = 0;  // nodes
+  std::uint32_t rounds_ = 1;    // dispatches that the sort is spread over
   Pipeline capture_, resolve_;
-  Buffer nodes_, heads_, counters_, readback_;
+  Buffer nodes_, heads_, runs_, counters_, readback_;
 };
 
 const RegisterMethod registered({

@@ -23,7 +23,8 @@ struct ListCounters {
   uint fragments;    // captured, or that would have been: more than the pool holds means overflow
   uint deepest;      // most fragments of one pixel
   uint coveredPixels;
-  uint unused;
+  uint resolved;    // fragments that were blended: all of them, or the image is not to be trusted
+  uint unfinished;  // pixels whose sort wants more rounds than were recorded
 };
 
 #ifndef __cplusplus
@@ -37,7 +38,9 @@ struct ListPush {
   ADDRESS_OF(NodeBuffer) nodes;
   ADDRESS_OF(HeadBuffer) heads;
   ADDRESS_OF(CounterBuffer) counters;
-  uint capacity;  // nodes
+  ADDRESS_OF(HeadBuffer) runs;  // per pixel: length of the sorted runs that a round ended with
+  uint capacity;                // nodes
+  uint round, rounds;           // of the sort; see resolve.comp
 };
 
 #ifdef __cplusplus
