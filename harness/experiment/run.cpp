@@ -1,5 +1,7 @@
 #include "experiment/run.h"
 
+#include <unistd.h>
+
 #include "commit.h"
 #include "experiment/describe.h"
 #include "image/hash.h"
@@ -58,6 +60,8 @@ class Run {
   const Experiment& experiment_;
   fs::path results_;
   Progress& progress_;
+  const std::string runId_ = fmt::format(
+      "{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
 };
 
 json Run::header(const CellSpec& cell) const {
@@ -69,7 +73,8 @@ json Run::header(const CellSpec& cell) const {
   json group = cell.identity();
   group.erase("method");
   group.erase("parameters");
-  const std::string text = group.dump() + device_.info().name;
+  // Cells of another run of the program were not measured in turn with these: not the same group.
+  const std::string text = group.dump() + device_.info().name + runId_;
   content["group"] = imageHash(std::as_bytes(std::span(text))).substr(0, 16);
   content["scene"]["name"] = fs::path(cell.scene.source).stem().string();
   if (!cell.scene.opacity) content["scene"]["opacity"] = nullptr;
