@@ -205,6 +205,8 @@ def check_cell(cell: dict) -> None:
          lambda v: isinstance(v, list) and len(v) == len(times) and all(type(b) is int for b in v))
     _get(cell, "/gpu_ms/stages", "an object of times in ms",
          lambda v: isinstance(v, dict) and all(t == 0 or _is_time(t) for t in v.values()))
+    _get_if_there(cell, "/stage_order", "a list of names",
+                  lambda v: isinstance(v, list) and all(isinstance(name, str) for name in v))
     _get(cell, "/counters", "an object of numbers", _is_numbers)
     _get(cell, "/memory_bytes/total", "a number", is_number)
     _get(cell, "/memory_bytes/buffers", "an object of numbers", _is_numbers)
@@ -276,7 +278,9 @@ def flatten(cell: dict) -> dict[str, object]:
     row |= {f"quality.{key}": value for key, value in (cell.get("quality") or {}).items()}
     row |= {f"counter.{key}": value for key, value in cell.get("counters", {}).items()}
     stages = cell.get("gpu_ms", {}).get("stages", {})
-    row |= {f"stage.{key}_ms": value for key, value in stages.items()}
+    # JSON objects have no order; the stages have one, and charts follow it.
+    order = [key for key in cell.get("stage_order", []) if key in stages] or list(stages)
+    row |= {f"stage.{key}_ms": stages[key] for key in order}
     buffers = cell.get("memory_bytes", {}).get("buffers", {})
     row |= {f"memory.{key}": value for key, value in buffers.items()}
     row |= {f"stop.{key}": value for key, value in cell.get("stop", {}).items()}

@@ -232,6 +232,7 @@ void makeFolder(const fs::path& folder) {
 
 RunSummary runExperiment(const Device& device, const Experiment& experiment,
                          const std::vector<CellSpec>& cells, const fs::path& results) {
+  for (const CellSpec& cell : cells) checkTargetSize(device.info(), cell.width, cell.height);
   makeFolder(results / "cells");
   makeFolder(results / "images");
 

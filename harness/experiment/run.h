@@ -35,7 +35,8 @@ struct RunSummary {
 /// Measures the cells that `results` does not hold yet. One JSON file a cell in results/cells, its
 /// picture in results/images, each under a temporary name until complete: a killed run loses only
 /// what was being measured. A cell that cannot be measured is written with the reason. Throws
-/// InputError when the folder cannot be written.
+/// InputError, before anything is measured, when the folder cannot be written or a size is beyond
+/// the device.
 RunSummary runExperiment(const Device& device, const Experiment& experiment,
                          const std::vector<CellSpec>& cells, const std::filesystem::path& results);
 

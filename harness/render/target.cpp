@@ -43,12 +43,16 @@ TargetFormat parseFormat(const std::string& name) {
                    joinNames(names));
 }
 
-Target::Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format)
-    : format_(format) {
-  const std::uint32_t limit = device.info().maxImageSize;
+void checkTargetSize(const DeviceInfo& device, std::uint32_t width, std::uint32_t height) {
+  const std::uint32_t limit = device.maxImageSize;
   if (width == 0 || height == 0 || width > limit || height > limit)
     fail<InputError>("size {}x{}: each side must be from 1 to {} on {}", width, height, limit,
-                     device.info().name);
+                     device.name);
+}
+
+Target::Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format)
+    : format_(format) {
+  checkTargetSize(device.info(), width, height);
   using Usage = vk::ImageUsageFlagBits;
   color_ = GpuImage(device, memory_,
                     {"target color", vulkanFormat(format), width, height, 1,

@@ -18,11 +18,14 @@ std::string formatName(TargetFormat format);
 TargetFormat parseFormat(const std::string& name);
 vk::Format vulkanFormat(TargetFormat format);
 
+/// Throws InputError when a side is 0 or beyond what `device` can make.
+void checkTargetSize(const DeviceInfo& device, std::uint32_t width, std::uint32_t height);
+
 /// The images that a frame is made in: the colour (always in layout GENERAL, read and written by
 /// attachments and storage alike) and the opaque depth (reversed, D32).
 class Target {
  public:
-  /// Throws InputError when a side is 0 or beyond the device, DeviceError when memory is short.
+  /// Throws as checkTargetSize(), and DeviceError when memory is short.
   Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format);
 
   std::uint32_t width() const { return color_.description().width; }

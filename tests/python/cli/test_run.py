@@ -1,0 +1,160 @@
+"""`oitlab run`: resumes, shards, survives a kill, and writes rows for what cannot be measured."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+
+EXPERIMENT = """
+name = "tiny"
+sizes = ["48x27"]
+scenes = ["planes", { source = "boxes", detail = 0.03 }]
+[[methods]]
+method = "blend"
+order = ["submission", "sorted"]
+[[methods]]
+method = "reference"
+[measure]
+time_limit = 0.2
+stage_frames = 3
+"""
+
+
+@pytest.fixture
+def tiny(tmp_path):
+    path = tmp_path / "tiny.toml"
+    path.write_text(EXPERIMENT)
+    return path
+
+
+def cells(results):
+    return {p.name: json.loads(p.read_text()) for p in (results / "cells").glob("*.json")}
+
+
+def test_measures_then_resumes(oitlab, tiny, tmp_path):
+    results = tmp_path / "results"
+    done = oitlab("run", tiny, "--results", results)
+    assert done.returncode == 0, done.stderr
+    first = cells(results)
+    assert len(first) == 6
+    for cell in first.values():
+        assert cell["status"] == "ok" and cell["experiment"] == "tiny"
+        assert len(cell["samples"]["frame_ms"]) == len(cell["samples"]["block"]) >= 3
+        assert cell["statistics"]["frame"]["median"] == cell["gpu_ms"]["frame"] > 0
+        low, high = cell["statistics"]["frame"]["ci95"]
+        assert low <= cell["gpu_ms"]["frame"] <= high
+        assert cell["stop"]["reason"] in ("spread", "settled", "time_limit", "max_blocks")
+        assert cell["counters"]["fragments"] > 0
+        assert set(cell["stage_order"]) == set(cell["gpu_ms"]["stages"])
+        assert (results / cell["image"]["file"]).exists()
+        assert cell["quality"]["reference"] == "reference"
+        exact = cell["method"] == "reference"
+        assert (cell["quality"]["rmse"] == 0) == exact
+    groups = {}
+    for cell in first.values():
+        groups.setdefault(cell["group"], []).append(cell["scene"]["name"])
+    assert sorted(map(len, groups.values())) == [3, 3]
+    # The same fragments, whoever counts them: the query of blend, the lists of the reference.
+    for name in ("planes", "boxes"):
+        counts = {c["counters"]["fragments"] for c in first.values() if c["scene"]["name"] == name}
+        assert len(counts) == 1
+
+    removed = sorted(first)[0]
+    (results / "cells" / removed).unlink()
+    again = oitlab("run", tiny, "--results", results)
+    assert again.returncode == 0 and "1 measured, 5 there before" in again.stderr
+    second = cells(results)
+    assert second.keys() == first.keys()
+    for name in first:
+        if name != removed:
+            assert second[name] == first[name]
+        assert second[name]["image_hash"] == first[name]["image_hash"]
+
+
+def test_dry_run_measures_nothing(oitlab, tiny, tmp_path):
+    done = oitlab("run", tiny, "--results", tmp_path / "results", "--dry-run")
+    assert done.returncode == 0 and len(done.stdout.splitlines()) == 6
+    assert not (tmp_path / "results").exists()
+
+
+def test_shards_make_the_whole(oitlab, tiny, tmp_path):
+    results = tmp_path / "results"
+    for shard in ("2/2", "1/2"):
+        assert oitlab("run", tiny, "--results", results, "--shard", shard).returncode == 0
+        assert len(cells(results)) == (3 if shard == "2/2" else 6)
+    done = oitlab("run", tiny, "--results", results)
+    assert "0 measured, 6 there before" in done.stderr
+
+
+def test_a_killed_run_leaves_whole_cells_and_resumes(oitlab, tiny, tmp_path):
+    results = tmp_path / "results"
+    run = subprocess.Popen([oitlab.program, "run", str(tiny), "--results", str(results)],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not list(results.glob("cells/*.json")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    before = cells(results)  # every file there parses
+    assert before
+    done = oitlab("run", tiny, "--results", results)
+    assert done.returncode == 0
+    assert len(cells(results)) == 6
+    assert f"{len(before)} there before" in done.stderr
+
+
+def test_a_damaged_cell_is_measured_again(oitlab, tiny, tmp_path):
+    results = tmp_path / "results"
+    oitlab("run", tiny, "--results", results, "--shard", "1/2")
+    victim = sorted((results / "cells").glob("*.json"))[0]
+    victim.write_text(victim.read_text()[:100])
+    done = oitlab("run", tiny, "--results", results, "--shard", "1/2")
+    assert done.returncode == 0 and "measured again" in done.stderr
+    assert json.loads(victim.read_text())["status"] == "ok"
+
+
+def test_what_cannot_be_measured_is_a_row_with_the_reason(oitlab, tmp_path):
+    (tmp_path / "broken.glb").write_bytes(b"glTF nonsense")
+    experiment = tmp_path / "mixed.toml"
+    experiment.write_text("""
+sizes = ["32x18"]
+scenes = ["broken.glb", "planes"]
+methods = ["blend"]
+[measure]
+time_limit = 0.1
+""")
+    results = tmp_path / "results"
+    done = oitlab("run", experiment, "--results", results)
+    assert done.returncode == 1
+    by_status = {c["status"]: c for c in cells(results).values()}
+    assert by_status.keys() == {"ok", "failed"}
+    assert "broken.glb" in by_status["failed"]["reason"]
+
+
+def test_results_folder_that_cannot_be_written(oitlab, tiny, tmp_path):
+    (tmp_path / "file").write_text("")
+    done = oitlab("run", tiny, "--results", tmp_path / "file" / "results")
+    assert done.returncode == 2 and "cannot be written" in done.stderr
+
+
+def test_size_beyond_the_device_is_bad_input_before_anything_is_measured(oitlab, tmp_path):
+    experiment = tmp_path / "huge.toml"
+    experiment.write_text('scenes = ["planes"]\nmethods = ["blend"]\nsizes = ["32x18", "99999x18"]\n')
+    done = oitlab("run", experiment, "--results", tmp_path / "results")
+    assert done.returncode == 2 and "99999" in done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_report_of_a_run(oitlab, tiny, tmp_path):
+    results = tmp_path / "results"
+    oitlab("run", tiny, "--results", results)
+    done = oitlab("report", results)
+    assert done.returncode == 0, done.stderr
+    for name in ("report.html", "report.md", "cells.csv"):
+        assert str(results / name) in done.stdout and (results / name).stat().st_size > 0
+    page = (results / "report.html").read_text()
+    assert "data:image/" in page and "http" + "s://" not in page.split("<body")[1]
+    assert os.path.getsize(results / "plots" / "frame-times-1.png") > 0
