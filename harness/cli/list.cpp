@@ -2,6 +2,8 @@
 #include "experiment/describe.h"
 #include "method/method.h"
 #include "scene/scene.h"
+#include "util/error.h"
+#include "util/suggest.h"
 
 namespace oitlab {
 namespace {
@@ -55,13 +57,14 @@ void addList(CLI::App& program, Action& action) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* verb = program.add_subcommand(
       "list", "Methods with their parameters (type, range, default, unit), or generated scenes");
-  verb->add_option("what", options->what, "methods or scenes")
-      ->required()
-      ->check(CLI::IsMember({"methods", "scenes"}));
+  verb->add_option("what", options->what, "methods or scenes")->required();
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] {
     action = [=] {
-      return options->what == "methods" ? listMethods(options->json) : listScenes(options->json);
+      if (options->what == "methods") return listMethods(options->json);
+      if (options->what == "scenes") return listScenes(options->json);
+      fail<InputError>("cannot list '{}'{}; wanted: methods or scenes", options->what,
+                       didYouMean(options->what, {"methods", "scenes"}));
     };
   });
 }

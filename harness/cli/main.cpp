@@ -15,7 +15,10 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   for (const CLI::App* child : verb->get_subcommands({})) names.push_back(child->get_name());
   for (const CLI::Option* option : verb->get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  for (const std::string& extra : verb->remaining(true)) message += didYouMean(extra, names);
+  // A misspelt option leaves its value over too; the first word is the one to mend.
+  if (const auto extras = verb->remaining(true); !extras.empty())
+    message =
+        fmt::format("'{}' is not known here{}", extras.front(), didYouMean(extras.front(), names));
   return message;
 }
 

@@ -12,6 +12,7 @@ def oitlab(tmp_path_factory):
     """Runs the program in an empty folder; returns the completed process."""
     program = os.environ.get("OITLAB_PROGRAM")
     if not program:
+        assert "CI" not in os.environ, "OITLAB_PROGRAM is not set"
         pytest.skip("OITLAB_PROGRAM is not set")
     folder = tmp_path_factory.mktemp("work")
 

@@ -93,5 +93,9 @@ def test_opacity_override_and_views(render_json):
     clear = render_json("--scene", "boxes", "--method", "blend", "--opacity", "0.1")
     assert opaque["image_hash"] != clear["image_hash"]
     orbit = render_json("--scene", "boxes", "--method", "blend", "--view", "orbit:0.5,0.8,10,60")
+    # That is how the default view was made, but for the centre of the jittered boxes' bounds.
     default = render_json("--scene", "boxes", "--method", "blend")
-    assert orbit["image_hash"] == default["image_hash"]
+    assert orbit["camera"]["eye"] == pytest.approx(default["camera"]["eye"], abs=0.1)
+    look = render_json("--scene", "boxes", "--method", "blend", "--view", "look:9,0,0,0,0,0,40")
+    assert look["camera"]["eye"] == [9, 0, 0]
+    assert look["camera"]["fov_y_degrees"] == pytest.approx(40)

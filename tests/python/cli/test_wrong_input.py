@@ -25,7 +25,8 @@ BAD_INPUT = [
     (RENDER + ["--scene", "boxes", "--method", "blend", "--out", "x.bmp"], [".bmp", ".png"]),
     (RENDER + ["--scene", "boxes", "--method", "blend", "--out", "no/such/folder/x.png"],
      ["no folder"]),
-    (RENDER + ["--scene", "boxes", "--method", "blend", "--siz", "4x4"], ["--siz"]),
+    (RENDER + ["--scene", "boxes", "--method", "blend", "--siz", "4x4"],
+     ["did you mean '--size'"]),
     (["render", "--scene", "boxes", "--method", "blend", "--size", "0x18"], ["0x18", "1 to"]),
     (["render", "--scene", "boxes", "--method", "blend", "--size", "99999x18"], ["99999", "1 to"]),
     (["render", "--scene", "boxes", "--method", "blend", "--size", "big"], ["WxH"]),
@@ -33,7 +34,7 @@ BAD_INPUT = [
     (["run", "nowhere.toml", "--shard", "5/4"], ["nowhere.toml"]),
     (["report", "nowhere"], ["nowhere"]),
     (["compare", "a.png", "nowhere.png"], ["a.png"]),
-    (["list", "everything"], ["methods"]),
+    (["list", "metods"], ["did you mean 'methods'"]),
 ]
 
 
