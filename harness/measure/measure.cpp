@@ -51,8 +51,7 @@ void measureBlock(Renderer& renderer, const Camera& camera, Subject& subject) {
   result.seconds += seconds;
   ++result.blocks;
   if (block.empty()) {
-    if (result.frame.ms.empty() && result.blocks >= 3)
-      throw DeviceError("the device gives no usable timestamps");
+    subject.rule.addBlock(std::numeric_limits<double>::quiet_NaN(), seconds);  // towards the limits
     return;
   }
   std::sort(block.begin(), block.end());
@@ -63,6 +62,7 @@ void measureBlock(Renderer& renderer, const Camera& camera, Subject& subject) {
 void finishSubject(Renderer& renderer, const Camera& camera, const MeasureSettings& settings,
                    Subject& subject) {
   Measurement& result = subject.result;
+  if (result.frame.ms.empty()) throw DeviceError("the device gave no usable timestamps");
   result.stopReason = subject.rule.stopReason();
   result.relativeSpread = subject.rule.relativeSpread();
   renderer.render(*subject.method, camera);
