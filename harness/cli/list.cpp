@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "experiment/describe.h"
 #include "method/method.h"
+#include "scene/quads.h"
 #include "scene/scene.h"
 #include "util/error.h"
 #include "util/suggest.h"
@@ -32,11 +33,14 @@ int listScenes(bool asJson) {
   nlohmann::json list = nlohmann::json::array();
   for (const SceneInfo& info : sceneCatalogue()) {
     const Scene scene = loadScene({info.name, {}, 1.0f});
+    const QuadMesh quads = cachedQuads(scene);
     std::vector<std::string> views;
     for (const auto& [name, camera] : scene.views) views.push_back(name);
     list.push_back({{"name", info.name},
                     {"summary", info.summary},
                     {"triangles", scene.triangles.size()},
+                    {"quads", quads.quads.size()},
+                    {"degenerate_percent", quads.degeneratePercent()},
                     {"vertices", scene.vertices.size()},
                     {"materials", scene.materials.size()},
                     {"textures", scene.textures.size()},

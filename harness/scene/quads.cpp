@@ -1,0 +1,206 @@
+#include "scene/quads.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include <xxhash.h>
+
+#include "util/error.h"
+
+namespace oitlab {
+namespace {
+
+// Half-edge 3 t + i runs from corner i of triangle t to its next corner. Candidate quads are pairs
+// of opposite half-edges, and each half-edge is in one at most; so a triangle has at most three
+// candidates, a candidate at most four that it conflicts with, and all below is linear.
+constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kUpwards = 1u << 31;  // beside a half-edge: it runs to the higher vertex
+constexpr std::uint32_t kMaxTriangles = (kUpwards - 1) / 3;
+
+std::uint32_t triangleOf(std::uint32_t halfEdge) {
+  return halfEdge / 3;
+}
+std::uint32_t nextCorner(std::uint32_t corner) {
+  return corner == 2 ? 0 : corner + 1;
+}
+
+/// For each vertex the first one with the same 32 bytes: files without an index buffer, and seams
+/// that are none, still have quads.
+std::vector<std::uint32_t> weld(const std::vector<Vertex>& vertices) {
+  // Open addressing, at most two thirds full.
+  std::vector<std::uint32_t> table(std::bit_ceil(vertices.size() * 3 / 2 + 1), kNone);
+  std::vector<std::uint32_t> first(vertices.size());
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    std::size_t slot = XXH3_64bits(&vertices[i], sizeof(Vertex)) & (table.size() - 1);
+    while (table[slot] != kNone &&
+           std::memcmp(&vertices[table[slot]], &vertices[i], sizeof(Vertex)) != 0)
+      slot = (slot + 1) & (table.size() - 1);
+    if (table[slot] == kNone) table[slot] = i;
+    first[i] = table[slot];
+  }
+  return first;
+}
+
+class Pairing {
+ public:
+  explicit Pairing(const Scene& scene) : triangles_(scene.triangles) {
+    if (triangles_.size() > kMaxTriangles)
+      fail<InputError>(
+          "scene '{}': {} triangles are more than the {} that can be paired into quads", scene.name,
+          triangles_.size(), kMaxTriangles);
+    findCandidates(weld(scene.vertices));
+    chooseGreedily();
+  }
+
+  QuadMesh quads() const {
+    QuadMesh mesh;
+    mesh.quads.reserve(triangles_.size() / 2 + 1);
+    mesh.triangles.reserve(triangles_.size() / 2 + 1);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      const glm::uvec3& mine = triangles_[t];
+      if (chosen_[t] == kNone) {
+        mesh.quads.emplace_back(mine.x, mine.y, mine.z, mine.z);
+        mesh.triangles.emplace_back(t, QuadMesh::noTriangle);
+        ++mesh.degenerate;
+        continue;
+      }
+      const std::uint32_t other = opposite_[chosen_[t]], u = triangleOf(other);
+      if (u < t) continue;
+      // Mine runs from c to a, the other's from a to c.
+      const std::uint32_t c = chosen_[t] % 3, a = nextCorner(c), b = nextCorner(a);
+      const std::uint32_t d = nextCorner(nextCorner(other % 3));
+      mesh.quads.emplace_back(mine[int(a)], mine[int(b)], mine[int(c)], triangles_[u][int(d)]);
+      mesh.triangles.emplace_back(t, u);
+    }
+    return mesh;
+  }
+
+ private:
+  /// Fills opposite_. Half-edges are gathered by their lower vertex, and each vertex's are sorted
+  /// by the higher one, then by direction, then by id, which are the bits of a key.
+  void findCandidates(const std::vector<std::uint32_t>& welded) {
+    const auto ends = [&](std::uint32_t h) {
+      const glm::uvec3& t = triangles_[triangleOf(h)];
+      return std::pair(welded[t[int(h % 3)]], welded[t[int(nextCorner(h % 3))]]);
+    };
+    const auto count = std::uint32_t(3 * triangles_.size());
+    std::vector<std::uint32_t> begin(welded.size() + 2);
+    for (std::uint32_t h = 0; h < count; ++h) {
+      const auto [from, to] = ends(h);
+      if (from != to) ++begin[std::min(from, to) + 2];
+    }
+    for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
+    std::vector<std::uint64_t> keys(begin.back());
+    for (std::uint32_t h = 0; h < count; ++h) {
+      const auto [from, to] = ends(h);
+      if (from == to) continue;
+      const std::uint32_t low = (from < to ? kUpwards : 0u) | h;
+      keys[begin[std::min(from, to) + 1]++] = (std::uint64_t(std::max(from, to)) << 32) | low;
+    }
+
+    opposite_.assign(count, kNone);
+    const auto halfEdge = [](std::uint64_t key) { return std::uint32_t(key) & ~kUpwards; };
+    for (std::size_t v = 0; v < welded.size(); ++v) {
+      const auto last = keys.begin() + begin[v + 1];
+      std::sort(keys.begin() + begin[v], last);
+      for (auto edge = keys.begin() + begin[v]; edge != last;) {
+        const std::uint64_t top = *edge >> 32;
+        const auto up = std::find_if(
+            edge, last, [&](std::uint64_t key) { return key >= ((top << 32) | kUpwards); });
+        const auto end =
+            std::find_if(up, last, [&](std::uint64_t key) { return key >> 32 != top; });
+        // The n-th one way with the n-th the other way. A closed surface has one of each; where
+        // many triangles meet, all pairs would be quadratic.
+        for (auto a = edge, b = up; a != up && b != end; ++a, ++b)
+          addCandidate(halfEdge(*a), halfEdge(*b));
+        edge = end;
+      }
+    }
+  }
+
+  void addCandidate(std::uint32_t h, std::uint32_t g) {
+    const std::uint32_t t = triangleOf(h), u = triangleOf(g);
+    if (t == u) return;
+    // Two triangles with more than one edge in common are one quad all the same.
+    for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i)
+      if (opposite_[i] != kNone && triangleOf(opposite_[i]) == u) return;
+    opposite_[h] = g;
+    opposite_[g] = h;
+  }
+
+  bool isOpen(std::uint32_t h) const {
+    const std::uint32_t g = opposite_[h];
+    return g != kNone && chosen_[triangleOf(h)] == kNone && chosen_[triangleOf(g)] == kNone;
+  }
+
+  /// How many open candidates the candidate of half-edge h conflicts with.
+  std::uint32_t degree(std::uint32_t h) const {
+    return open_[triangleOf(h)] + open_[triangleOf(opposite_[h])] - 2u;
+  }
+
+  /// Fills chosen_. A candidate is named by the lower of its half-edges. Degrees only fall: a
+  /// candidate is put into the bucket of its new degree each time, and what is found in a bucket
+  /// that it has left is passed over.
+  void chooseGreedily() {
+    chosen_.assign(triangles_.size(), kNone);
+    open_.assign(triangles_.size(), 0);
+    for (std::uint32_t h = 0; h < opposite_.size(); ++h)
+      open_[triangleOf(h)] += opposite_[h] != kNone;
+    // Backwards, since buckets are emptied from their end: low ids first.
+    for (auto h = std::uint32_t(opposite_.size()); h-- > 0;)
+      if (opposite_[h] != kNone && h < opposite_[h]) buckets_[degree(h)].push_back(h);
+    for (std::size_t least = 0; least < buckets_.size();) {
+      if (buckets_[least].empty()) {
+        ++least;
+        continue;
+      }
+      const std::uint32_t h = buckets_[least].back();
+      buckets_[least].pop_back();
+      if (isOpen(h) && degree(h) == least) {
+        choose(h);
+        least = 0;
+      }
+    }
+  }
+
+  void choose(std::uint32_t h) {
+    const std::uint32_t pair[] = {triangleOf(h), triangleOf(opposite_[h])};
+    // The triangles whose candidates with one of the pair are closed by this.
+    std::array<std::uint32_t, 4> neighbours;
+    std::size_t count = 0;
+    for (const std::uint32_t t : pair)
+      for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i)
+        if (isOpen(i) && triangleOf(opposite_[i]) != pair[0] && triangleOf(opposite_[i]) != pair[1])
+          neighbours[count++] = triangleOf(opposite_[i]);
+    chosen_[pair[0]] = h;
+    chosen_[pair[1]] = opposite_[h];
+    for (std::size_t n = 0; n < count; ++n) --open_[neighbours[n]];
+    for (std::size_t n = 0; n < count; ++n)
+      for (std::uint32_t i = 3 * neighbours[n]; i < 3 * neighbours[n] + 3; ++i)
+        if (isOpen(i)) {
+          const std::uint32_t candidate = std::min(i, opposite_[i]);
+          buckets_[degree(candidate)].push_back(candidate);
+        }
+  }
+
+  const std::vector<glm::uvec3>& triangles_;
+  std::vector<std::uint32_t> opposite_;  // per half-edge: the other one of its candidate, or kNone
+  std::vector<std::uint32_t> chosen_;    // per triangle: its half-edge of the chosen quad, or kNone
+  std::vector<std::uint8_t> open_;       // per triangle: candidates with triangles not yet chosen
+  std::array<std::vector<std::uint32_t>, 5> buckets_;  // candidates by degree
+};
+
+}  // namespace
+
+double QuadMesh::degeneratePercent() const {
+  return quads.empty() ? 0.0 : 100.0 * double(degenerate) / double(quads.size());
+}
+
+QuadMesh pairTriangles(const Scene& scene) {
+  return Pairing(scene).quads();
+}
+
+}  // namespace oitlab
