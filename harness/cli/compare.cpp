@@ -15,30 +15,18 @@ struct CompareOptions {
   bool json = false;
 };
 
-/// The numbers as EXR, or a picture of them as PNG.
-void writeCompareMap(const std::string& path, const Plane<float>& errors, float scale) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".exr" || extension == ".EXR") {
-    writeImage(path, planeImage(errors));
-    return;
-  }
-  // By default the largest error is the brightest colour; equal images have a scale all the same.
-  if (scale == 0.0f) {
-    scale = 1.0f / 255.0f;
-    for (const float error : errors.values)
-      if (std::isfinite(error)) scale = std::max(scale, error);
-  }
-  writeImage(path, drawMap(errors, scale));
-}
-
 int compare(const CompareOptions& options) {
   if (!options.map.empty()) checkImagePath(options.map);
   const MapMetric metric = parseMapMetric(options.metric);
   const Image image = readImage(options.image);
   const Image reference = readImage(options.reference);
   const Comparison c = compareImages(image, reference);
-  if (!options.map.empty())
-    writeCompareMap(options.map, errorPlane(image, reference, metric), options.mapScale);
+  if (!options.map.empty()) {
+    const Plane<float> errors = errorPlane(image, reference, metric);
+    // By default the largest error is the brightest colour; equal images have a scale all the same.
+    const float scale = options.mapScale > 0 ? options.mapScale : largestFinite(errors, 1.0f / 255);
+    writeMap(options.map, errors, scale);
+  }
   if (options.json) {
     nlohmann::json result = describeComparison(c);
     result["pixels_off_count"] = c.pixelsOffCount;

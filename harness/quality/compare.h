@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,6 +60,13 @@ Image drawMap(const Plane<float>& values, float scale);
 
 /// The numbers themselves as a grey linear image, for EXR files.
 Image planeImage(const Plane<float>& values);
+
+/// Writes the plane: .png as drawMap() with `scale`, .exr as planeImage(). Throws InputError as
+/// writeImage() does.
+void writeMap(const std::filesystem::path& path, const Plane<float>& values, float scale);
+
+/// The largest value that is finite, or `least` when none is larger: a scale for drawMap().
+float largestFinite(const Plane<float>& values, float least);
 
 /// drawMap() of the absolute error.
 Image errorMap(const Image& image, const Image& reference, float scale);

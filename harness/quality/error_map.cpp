@@ -122,6 +122,18 @@ Image planeImage(const Plane<float>& values) {
   return image;
 }
 
+void writeMap(const std::filesystem::path& path, const Plane<float>& values, float scale) {
+  const std::string extension = path.extension().string();
+  const bool raw = extension == ".exr" || extension == ".EXR";
+  writeImage(path, raw ? planeImage(values) : drawMap(values, scale));
+}
+
+float largestFinite(const Plane<float>& values, float least) {
+  for (const float value : values.values)
+    if (std::isfinite(value)) least = std::max(least, value);
+  return least;
+}
+
 Image errorMap(const Image& image, const Image& reference, float scale) {
   return drawMap(errorPlane(image, reference, MapMetric::absolute), scale);
 }
