@@ -168,6 +168,10 @@ TEST(ErrorMap, EachMetricIsZeroWhereEqualAndInfinityWhereNotANumber) {
   for (const std::string& name : mapMetricNames()) {
     const Plane<float> errors = errorPlane(image, reference, parseMapMetric(name));
     EXPECT_EQ(errors.row(20)[10], kInfinity) << name;
+    EXPECT_EQ(std::count_if(errors.values.begin(), errors.values.end(),
+                            [](float error) { return std::isfinite(error); }),
+              60 * 40 - 1)
+        << name << ": it must not spread through a filter";
     EXPECT_GT(errors.row(20)[40], 0.01F) << name;
     EXPECT_LT(errors.row(20)[40], 1.0F) << name;
     EXPECT_NEAR(errors.row(2)[55], 0.0F, 1e-6F) << name;

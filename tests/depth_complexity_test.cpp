@@ -1,7 +1,5 @@
 #include "render/depth_complexity.h"
 
-#include <numeric>
-
 #include "support/gpu.h"
 
 namespace oitlab::testing {
@@ -68,6 +66,19 @@ TEST_F(DepthComplexityGpu, OpaqueGeometryHidesWhatIsBehindIt) {
   for (std::uint32_t y = 0; y < 12; ++y)
     for (std::uint32_t x = 0; x < 16; ++x)
       EXPECT_EQ(depth.counts[y * 16 + x], x < 8 ? 2u : 1u) << x << ", " << y;
+}
+
+// What alpha cuts away is no fragment: nobody blends it.
+TEST_F(DepthComplexityGpu, CutAwayFragmentsAreNotCounted) {
+  const auto layer = [](float z) {
+    return std::array{glm::vec3{-99, -99, z}, glm::vec3{99, -99, z}, glm::vec3{0, 99, z}};
+  };
+  Scene scene = triangleScene({layer(0), layer(-1), layer(-2)},
+                              {{1, 1, 1, 0.25f}, {1, 1, 1, 0.75f}, {1, 1, 1, 0.5f}}, frontCamera());
+  scene.materials[0].alphaCutoff = 0.4f;
+  RenderFixture fixture(scene, 9, 7);
+  const DepthComplexity depth = countFragments(fixture.renderer(), fixture.defaultView());
+  EXPECT_EQ(depth.counts, std::vector<std::uint32_t>(9 * 7, 2u));
 }
 
 }  // namespace
