@@ -4,19 +4,16 @@ scikit-image where that is installed."""
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
 import numpy
 import pytest
-from conftest import ROOT
 from exr import read_exr_red, write_exr
 from PIL import Image
+from program import PROGRAM, needs_program
 
-PROGRAM = Path(os.environ.get("OITLAB_PROGRAM")
-               or ROOT / "build" / os.environ.get("OITLAB_PRESET", "release") / "oitlab")
-pytestmark = pytest.mark.skipif(not PROGRAM.is_file(), reason=f"{PROGRAM} is not built")
+pytestmark = needs_program
 SIZE = (48, 61)  # smaller than the filters reach, and of odd width
 
 
