@@ -7,7 +7,6 @@
 #include "quality/flip_colour.h"
 #include "quality/flip_feature.h"
 #include "util/check.h"
-#include "util/parallel.h"
 
 namespace oitlab {
 namespace {
@@ -18,8 +17,7 @@ Colour3 colourAt(const Planes<float>& planes, std::size_t i) {
 
 Plane<float> luminanceOf(const Planes<float>& rgb) {
   Plane<float> result(rgb[0].width, rgb[0].height);
-  for (std::size_t i = 0; i < result.values.size(); ++i)
-    result.values[i] = luminance(colourAt(rgb, i));
+  forEachPixel(result, [&](std::size_t i) { result.values[i] = luminance(colourAt(rgb, i)); });
   return result;
 }
 
@@ -30,16 +28,13 @@ Plane<float> flipMap(const Planes<float>& a, const Planes<float>& b, double pixe
   const Features featureA = detectFeatures(luminanceOf(a), pixelsPerDegree);
   const Features featureB = detectFeatures(luminanceOf(b), pixelsPerDegree);
   Plane<float> map(a[0].width, a[0].height);
-  parallelFor(std::size_t(map.height), [&](std::size_t y) {
-    const std::size_t first = y * std::size_t(map.width);
-    for (std::size_t i = first; i < first + std::size_t(map.width); ++i) {
-      const float colour = flipColourDifference(colourAt(colourA, i), colourAt(colourB, i));
-      const float feature =
-          flipFeatureDifference(featureA.edges.values[i], featureB.edges.values[i],
-                                featureA.points.values[i], featureB.points.values[i]);
-      // Section 4.3, eq. 11. Rounding must not leave [0, 1].
-      map.values[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
-    }
+  forEachPixel(map, [&](std::size_t i) {
+    const float colour = flipColourDifference(colourAt(colourA, i), colourAt(colourB, i));
+    const float feature =
+        flipFeatureDifference(featureA.edges.values[i], featureB.edges.values[i],
+                              featureA.points.values[i], featureB.points.values[i]);
+    // Section 4.3, eq. 11. Rounding must not leave [0, 1].
+    map.values[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
   });
   return map;
 }
@@ -75,7 +70,7 @@ double inverseToneMap(double t) {
 Planes<float> exposeAndToneMap(Planes<float> planes, double exposure) {
   const auto scale = float(std::exp2(exposure));
   for (Plane<float>& plane : planes)
-    for (float& value : plane.values) value = toneMap(value * scale);
+    forEachPixel(plane, [&](std::size_t i) { plane.values[i] = toneMap(plane.values[i] * scale); });
   return planes;
 }
 
@@ -119,8 +114,9 @@ Flip computeHdrFlip(const Image& image, const Image& reference, double pixelsPer
     const double exposure = range.first + (range.last - range.first) * i / (range.count - 1);
     const Plane<float> map =
         flipMap(exposeAndToneMap(a, exposure), exposeAndToneMap(b, exposure), pixelsPerDegree);
-    for (std::size_t p = 0; p < map.values.size(); ++p)
+    forEachPixel(map, [&](std::size_t p) {
       largest.values[p] = std::max(largest.values[p], map.values[p]);
+    });
   }
   return withMean(std::move(largest));
 }

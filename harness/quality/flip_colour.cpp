@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "util/parallel.h"
-
 namespace oitlab {
 namespace {
 
@@ -129,20 +127,17 @@ Plane<float> filterBy(const Sensitivity& s, const Plane<float>& plane, double pi
   Plane<float> result = filter(first, scale1);
   if (s.a2 == 0) return result;
   const Plane<float> rest = filter(second, scale2);
-  for (std::size_t i = 0; i < result.values.size(); ++i) result.values[i] += rest.values[i];
+  forEachPixel(result, [&](std::size_t i) { result.values[i] += rest.values[i]; });
   return result;
 }
 
 /// Calls change(colour) for the colour of every pixel, on all cores.
 template <typename Change>
 void changeColours(Planes<float>& planes, Change&& change) {
-  parallelFor(std::size_t(planes[0].height), [&](std::size_t y) {
-    for (int x = 0; x < planes[0].width; ++x) {
-      Colour3 colour{};
-      for (std::size_t c = 0; c < 3; ++c) colour[c] = planes[c].row(int(y))[x];
-      colour = change(colour);
-      for (std::size_t c = 0; c < 3; ++c) planes[c].row(int(y))[x] = colour[c];
-    }
+  forEachPixel(planes[0], [&](std::size_t i) {
+    const Colour3 colour =
+        change(Colour3{planes[0].values[i], planes[1].values[i], planes[2].values[i]});
+    for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
   });
 }
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "util/parallel.h"
-
 namespace oitlab {
 namespace {
 
@@ -44,8 +42,9 @@ Kernels makeKernels(double pixelsPerDegree) {
 
 Plane<float> lengths(const Plane<float>& x, const Plane<float>& y) {
   Plane<float> result(x.width, x.height);
-  for (std::size_t i = 0; i < result.values.size(); ++i)
+  forEachPixel(result, [&](std::size_t i) {
     result.values[i] = std::sqrt(x.values[i] * x.values[i] + y.values[i] * y.values[i]);
+  });
   return result;
 }
 

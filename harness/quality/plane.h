@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "util/parallel.h"
+
 namespace oitlab {
 
 /// One number a pixel, rows top to bottom.
@@ -20,6 +22,15 @@ struct Plane {
   int height = 0;
   std::vector<T> values;
 };
+
+/// Calls work(i) once for the index i of every value, rows side by side on all cores.
+template <typename T, typename Work>
+void forEachPixel(const Plane<T>& plane, Work&& work) {
+  parallelFor(std::size_t(plane.height), [&](std::size_t y) {
+    const std::size_t first = y * std::size_t(plane.width);
+    for (std::size_t i = first; i < first + std::size_t(plane.width); ++i) work(i);
+  });
+}
 
 /// R, G and B, or what they were turned into.
 template <typename T>

@@ -4,7 +4,6 @@
 
 #include "quality/display.h"
 #include "util/check.h"
-#include "util/parallel.h"
 
 namespace oitlab {
 namespace {
@@ -32,25 +31,21 @@ void addChannel(Plane<double>& map, const Plane<double>& a, const Plane<double>&
   };
   const auto blurProduct = [&](const Plane<double>& p, const Plane<double>& q) {
     Plane<double> product(p.width, p.height);
-    for (std::size_t i = 0; i < product.values.size(); ++i)
-      product.values[i] = p.values[i] * q.values[i];
+    forEachPixel(product, [&](std::size_t i) { product.values[i] = p.values[i] * q.values[i]; });
     return blur(product);
   };
   const Plane<double> meanA = blur(a), meanB = blur(b);
   const Plane<double> squareA = blurProduct(a, a), squareB = blurProduct(b, b);
   const Plane<double> mixed = blurProduct(a, b);
-  parallelFor(std::size_t(map.height), [&](std::size_t y) {
-    const std::size_t first = y * std::size_t(map.width);
-    for (std::size_t i = first; i < first + std::size_t(map.width); ++i) {
-      const double ma = meanA.values[i], mb = meanB.values[i];
-      const double varianceA = squareA.values[i] - ma * ma;
-      const double varianceB = squareB.values[i] - mb * mb;
-      const double covariance = mixed.values[i] - ma * mb;
-      // Eq. 13.
-      const double similarity = ((2 * ma * mb + kC1) * (2 * covariance + kC2)) /
-                                ((ma * ma + mb * mb + kC1) * (varianceA + varianceB + kC2));
-      map.values[i] += similarity / 3;
-    }
+  forEachPixel(map, [&](std::size_t i) {
+    const double ma = meanA.values[i], mb = meanB.values[i];
+    const double varianceA = squareA.values[i] - ma * ma;
+    const double varianceB = squareB.values[i] - mb * mb;
+    const double covariance = mixed.values[i] - ma * mb;
+    // Eq. 13.
+    const double similarity = ((2 * ma * mb + kC1) * (2 * covariance + kC2)) /
+                              ((ma * ma + mb * mb + kC1) * (varianceA + varianceB + kC2));
+    map.values[i] += similarity / 3;
   });
 }
 
