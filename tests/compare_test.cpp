@@ -1,5 +1,6 @@
 #include "quality/compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -87,6 +88,41 @@ TEST(CompareImages, NotANumberIsOffByInfinity) {
   }
 }
 
+TEST(CompareImages, SsimAndFlipOfEqualImages) {
+  const Comparison linear = compareImages(makeFlat(12, 11, 0.3F), makeFlat(12, 11, 0.3F));
+  EXPECT_EQ(linear.ssim, 1);
+  EXPECT_EQ(linear.flip, 0);
+  EXPECT_EQ(linear.flipHdr, 0);
+  // Equal images are not filtered: that must not say more than the filters would.
+  const Comparison small = compareImages(makeFlat(12, 10, 0.3F), makeFlat(12, 10, 0.3F));
+  EXPECT_EQ(small.ssim, std::nullopt);
+  EXPECT_EQ(small.flip, 0);
+  const Comparison encoded =
+      compareImages(makeFlat(12, 11, 0.3F, true), makeFlat(12, 11, 0.3F, true));
+  EXPECT_EQ(encoded.ssim, 1);
+  EXPECT_EQ(encoded.flipHdr, std::nullopt);
+}
+
+TEST(CompareImages, SsimAndFlipOfDifferentImages) {
+  const Comparison linear = compareImages(makeFlat(12, 11, 0), makeFlat(12, 11, 1));
+  EXPECT_NEAR(linear.ssim.value(), 1e-4 / (1 + 1e-4), 1e-9);
+  EXPECT_NEAR(linear.flip.value(), 0.96738, 2e-5);
+  EXPECT_TRUE(linear.flipHdr.has_value());
+  // Mixed: what is shown is compared, and that has no exposure.
+  const Comparison mixed = compareImages(makeFlat(12, 11, 0.5F, true), makeFlat(12, 11, 1));
+  EXPECT_GT(mixed.flip.value(), 0.1);
+  EXPECT_EQ(mixed.flipHdr, std::nullopt);
+}
+
+TEST(CompareImages, MeansOfSsimAndFlipDoNotHideNotANumber) {
+  Image broken = makeFlat(20, 20, 0.5F);
+  broken.at(0, 0)[2] = std::numeric_limits<float>::quiet_NaN();
+  const Comparison result = compareImages(broken, makeFlat(20, 20, 0.5F));
+  EXPECT_EQ(result.ssim, std::nullopt);
+  EXPECT_EQ(result.flip, std::nullopt);
+  EXPECT_EQ(result.flipHdr, std::nullopt);
+}
+
 TEST(CompareImages, EncodedMeetsLinear) {
   const Image encoded = makeFlat(1, 1, 0.5F, true);
   const Image linear = makeFlat(1, 1, 0.21404114F, false);
@@ -123,6 +159,42 @@ TEST(ErrorMap, ShowsTheLargestChannelOnTheScale) {
   EXPECT_EQ(colourAt(map, 2, 0), infernoColour(1));
   EXPECT_EQ(colourAt(map, 3, 0), (std::array<float, 3>{0, 1, 0}));
   EXPECT_EQ(colourAt(map, 0, 3), infernoColour(0));
+}
+
+TEST(ErrorMap, EachMetricIsZeroWhereEqualAndInfinityWhereNotANumber) {
+  Image image = makeFlat(60, 40, 0.5F), reference = image;
+  image.at(10, 20)[1] = std::numeric_limits<float>::quiet_NaN();
+  for (int c = 0; c < 3; ++c) image.at(40, 20)[c] = 0.9F;
+  for (const std::string& name : mapMetricNames()) {
+    const Plane<float> errors = errorPlane(image, reference, parseMapMetric(name));
+    EXPECT_EQ(errors.row(20)[10], kInfinity) << name;
+    EXPECT_EQ(std::count_if(errors.values.begin(), errors.values.end(),
+                            [](float error) { return std::isfinite(error); }),
+              60 * 40 - 1)
+        << name << ": it must not spread through a filter";
+    EXPECT_GT(errors.row(20)[40], 0.01F) << name;
+    EXPECT_LT(errors.row(20)[40], 1.0F) << name;
+    EXPECT_NEAR(errors.row(2)[55], 0.0F, 1e-6F) << name;
+    EXPECT_GE(*std::min_element(errors.values.begin(), errors.values.end()), 0.0F) << name;
+  }
+  // Filters spread an error, a difference of pixels does not.
+  EXPECT_EQ(errorPlane(image, reference, MapMetric::absolute).row(20)[41], 0.0F);
+  EXPECT_GT(errorPlane(image, reference, MapMetric::ssim).row(20)[41], 0.0F);
+}
+
+TEST(ErrorMap, NamesAndKindsOfImagesAreChecked) {
+  EXPECT_THAT(messageOf<InputError>([] { parseMapMetric("flop"); }), HasSubstr("flip_hdr"));
+  const std::string message = messageOf<InputError>(
+      [] { errorPlane(makeFlat(3, 3, 0, true), makeFlat(3, 3, 0), MapMetric::flipHdr); });
+  EXPECT_THAT(message, HasSubstr("linear"));
+}
+
+TEST(ErrorMap, ValuesAsAnImageAreGrey) {
+  Plane<float> plane(2, 1);
+  plane.values = {0.25F, 7.0F};
+  const Image image = planeImage(plane);
+  EXPECT_FALSE(image.srgb);
+  EXPECT_EQ(image.rgba, (std::vector<float>{0.25F, 0.25F, 0.25F, 1, 7, 7, 7, 1}));
 }
 
 TEST(ErrorMap, LegendRunsFromDarkToBright) {

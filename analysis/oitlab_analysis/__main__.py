@@ -1,4 +1,4 @@
-"""The command line: `python3 -m oitlab_analysis report RESULTS_DIR`."""
+"""The command line: `python3 -m oitlab_analysis report RESULTS_DIR`, or `histogram FILE OUT`."""
 
 from __future__ import annotations
 
@@ -36,11 +36,39 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     report.add_argument(
         "results", metavar="RESULTS_DIR", type=Path, help="the folder that holds cells/ and images/"
     )
+    histogram = commands.add_parser(
+        "histogram",
+        help="chart of a scene's depth complexity",
+        description="Draws how many pixels have how many fragments, on a log scale.",
+    )
+    histogram.add_argument("depth", metavar="FILE.json", type=Path,
+                           help="what `oitlab depth --json` prints")
+    histogram.add_argument("chart", metavar="OUT.png", type=Path, help="the chart to write")
     return parser.parse_args(arguments)
+
+
+def run_histogram(source: Path, target: Path) -> int:
+    try:
+        from .histogram import BadDepth, draw_histogram
+    except ModuleNotFoundError as error:
+        print(f"oitlab depth: {sys.executable} has no Python module {error.name}; wanted: matplotlib",
+              file=sys.stderr)
+        return EXIT_BAD_INPUT
+    try:
+        draw_histogram(source, target)
+    except BadDepth as error:
+        print(f"oitlab depth: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except OSError as error:
+        print(f"oitlab depth: {error.filename}: {error.strerror}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    return EXIT_DONE
 
 
 def main(arguments: list[str] | None = None) -> int:
     options = parse_arguments(arguments)
+    if options.command == "histogram":
+        return run_histogram(options.depth, options.chart)
     # Late, so that --help does not wait for matplotlib, and works without it.
     try:
         from .cells import BadResults

@@ -213,7 +213,7 @@ def check_cell(cell: dict) -> None:
     _get(cell, "/stop", "an object of plain values", _is_flat)
     _get_if_there(cell, "/stop/rejected_samples", "a number", is_number)
     _get_if_there(cell, "/quality", "an object of plain values", _is_flat)
-    for metric in ("rmse", "psnr", "max_error", "pixels_off"):
+    for metric in ("rmse", "psnr", "max_error", "pixels_off", "ssim", "flip", "flip_hdr"):
         _get_if_there(cell, f"/quality/{metric}", "a number or null", is_number)
     _get_if_there(cell, "/image/file", "a path", _is_text)
 

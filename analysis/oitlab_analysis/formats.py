@@ -65,6 +65,11 @@ def mebibytes(value: float | None) -> str:
     return number(value / 2**20) if is_number(value) else NOTHING
 
 
+def similarity(value: float | None) -> str:
+    """Four decimals, rounded down: only what is equal reads as 1.0000."""
+    return f"{math.floor(value * 1e4) / 1e4:.4f}" if is_number(value) else NOTHING
+
+
 def share(value: float | None) -> str:
     """A share of 1 as a percentage; anything above zero is shown as above zero."""
     if not is_number(value):

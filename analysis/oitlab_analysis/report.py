@@ -26,6 +26,8 @@ FIGURES = (
     ("RMSE", "rmse", "quality.rmse", "root mean square error against the reference image"),
     ("PSNR, dB", "psnr", "quality.psnr", "∞ means equal to the reference"),
     ("Pixels off", "pixels_off", "quality.pixels_off", "share of pixels off by more than 1/255"),
+    ("SSIM", "ssim", "quality.ssim", "structural similarity of display values; 1 means equal"),
+    ("FLIP", "flip", "quality.flip", "visible difference of display values, from 0 to 1"),
     ("Fragments", "fragments", "counter.fragments", "transparent fragments of a frame"),
     ("Memory, MiB", "memory", "memory_total_bytes", "all buffers and images of the method"),
 )

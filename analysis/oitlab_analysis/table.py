@@ -29,6 +29,8 @@ def describe(row: pandas.Series) -> dict[str, str]:
         "rmse": formats.number(row.get("quality.rmse")),
         "psnr": formats.decibels(row.get("quality.psnr"), row.get("quality.rmse")),
         "pixels_off": formats.share(row.get("quality.pixels_off")),
+        "ssim": formats.similarity(row.get("quality.ssim")),
+        "flip": formats.number(row.get("quality.flip")),
         "fragments": formats.count(row.get("counter.fragments")),
         "memory": formats.mebibytes(row["memory_total_bytes"]),
         "reason": "",
@@ -119,6 +121,8 @@ MARKDOWN_COLUMNS = (
     ("RMSE", "rmse"),
     ("PSNR dB", "psnr"),
     ("pixels off", "pixels_off"),
+    ("SSIM", "ssim"),
+    ("FLIP", "flip"),
     ("fragments", "fragments"),
     ("memory MiB", "memory"),
 )

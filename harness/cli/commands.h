@@ -18,6 +18,7 @@ void addList(CLI::App& program, Action& action);
 void addRender(CLI::App& program, Action& action);
 void addRun(CLI::App& program, Action& action);
 void addCompare(CLI::App& program, Action& action);
+void addDepth(CLI::App& program, Action& action);
 void addReport(CLI::App& program, Action& action);
 
 }  // namespace oitlab

@@ -3,38 +3,35 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "experiment/describe.h"
 
 namespace oitlab {
 namespace {
 
 struct CompareOptions {
   std::string image, reference, map;
+  std::string metric = "abs";
   float mapScale = 0.0f;
   bool json = false;
 };
 
 int compare(const CompareOptions& options) {
   if (!options.map.empty()) checkImagePath(options.map);
+  const MapMetric metric = parseMapMetric(options.metric);
   const Image image = readImage(options.image);
   const Image reference = readImage(options.reference);
   const Comparison c = compareImages(image, reference);
   if (!options.map.empty()) {
+    const Plane<float> errors = errorPlane(image, reference, metric);
     // By default the largest error is the brightest colour; equal images have a scale all the same.
-    constexpr float least = 1.0f / 255.0f;
-    float scale = options.mapScale;
-    if (scale == 0.0f)
-      scale = std::isfinite(c.maxError) ? std::max(float(c.maxError), least) : 1.0f;
-    writeImage(options.map, errorMap(image, reference, scale));
+    const float scale = options.mapScale > 0 ? options.mapScale : largestFinite(errors, 1.0f / 255);
+    writeMap(options.map, errors, scale);
   }
   if (options.json) {
-    const nlohmann::json finitePsnr = std::isfinite(c.psnr) ? nlohmann::json(c.psnr) : nullptr;
-    fmt::print("{}\n", nlohmann::json{{"rmse", c.rmse},
-                                      {"psnr", finitePsnr},
-                                      {"max_error", c.maxError},
-                                      {"pixels_off", c.pixelsOff},
-                                      {"pixels_off_count", c.pixelsOffCount},
-                                      {"size", {image.width, image.height}}}
-                           .dump(2));
+    nlohmann::json result = describeComparison(c);
+    result["pixels_off_count"] = c.pixelsOffCount;
+    result["size"] = {image.width, image.height};
+    fmt::print("{}\n", result.dump(2));
     return exitDone;
   }
   fmt::print(stderr, "RMSE        {:.6g}\n", c.rmse);
@@ -43,6 +40,12 @@ int compare(const CompareOptions& options) {
   fmt::print(stderr, "max error   {:.6g}\n", c.maxError);
   fmt::print(stderr, "pixels off  {} ({:.4f} %) by more than 1/255\n", c.pixelsOffCount,
              100.0 * c.pixelsOff);
+  const auto printed = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6f}", *value) : "not measurable";
+  };
+  fmt::print(stderr, "SSIM        {}\n", printed(c.ssim));
+  fmt::print(stderr, "FLIP        {}\n", printed(c.flip));
+  if (c.flipHdr) fmt::print(stderr, "HDR-FLIP    {}\n", printed(c.flipHdr));
   return exitDone;
 }
 
@@ -53,11 +56,16 @@ void addCompare(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("compare", "How far image A is from image B");
   verb->add_option("A", options->image, "Image, .png or .exr")->required();
   verb->add_option("B", options->reference, "Reference image of the same size")->required();
-  verb->add_option("--map", options->map, "Write a picture of the error here (.png)")
+  verb->add_option("--map", options->map,
+                   "Write the error here: a picture of it (.png) or its values (.exr)")
       ->type_name("FILE");
   verb->add_option("--map-scale", options->mapScale,
                    "Error of the brightest colour (default: the largest)")
       ->check(CLI::PositiveNumber);
+  verb->add_option("--metric", options->metric,
+                   "Of the map: abs (largest channel difference), flip, flip_hdr (two .exr) or "
+                   "ssim (1 - SSIM)")
+      ->capture_default_str();
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] { action = [=] { return compare(*options); }; });
 }

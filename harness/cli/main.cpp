@@ -41,6 +41,7 @@ int runProgram(int argc, char** argv) {
   addRender(program, action);
   addRun(program, action);
   addCompare(program, action);
+  addDepth(program, action);
   addReport(program, action);
   try {
     program.parse(argc, argv);

@@ -51,6 +51,16 @@ nlohmann::json describeCamera(const Camera& camera) {
           {"near", camera.near}};
 }
 
+nlohmann::json describeComparison(const Comparison& c) {
+  const auto number = [](const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
+  };
+  return {{"rmse", number(c.rmse)},          {"psnr", number(c.psnr)},
+          {"max_error", number(c.maxError)}, {"pixels_off", number(c.pixelsOff)},
+          {"ssim", number(c.ssim)},          {"flip", number(c.flip)},
+          {"flip_hdr", number(c.flipHdr)}};
+}
+
 nlohmann::json describeMemory(const Renderer& renderer, const Method& method) {
   nlohmann::json buffers = nlohmann::json::object();
   std::uint64_t total = 0;

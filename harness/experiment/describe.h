@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/experiment.h"
+#include "quality/compare.h"
 
 namespace oitlab {
 
@@ -13,6 +14,10 @@ nlohmann::json describeCamera(const Camera& camera);
 
 /// {"total": N, "method": N, "buffers": {name: N}}
 nlohmann::json describeMemory(const Renderer& renderer, const Method& method);
+
+/// {"rmse", "psnr", "max_error", "pixels_off", "ssim", "flip", "flip_hdr"}: `quality` of the cells.
+/// Null is what JSON has no number for, or what cannot be measured (quality/compare.h).
+nlohmann::json describeComparison(const Comparison& comparison);
 
 /// Commit, build type, validation, command line, date and the shaders of this method.
 nlohmann::json describeProvenance(const Device& device, const std::string& method);

@@ -24,12 +24,9 @@ json describeSummary(const Series& series, std::uint64_t seed) {
 }
 
 json describeQuality(const Image& image, const Image& reference, const std::string& name) {
-  const Comparison c = compareImages(image, reference);
-  return {{"reference", name},
-          {"rmse", c.rmse},
-          {"psnr", std::isfinite(c.psnr) ? json(c.psnr) : json()},
-          {"max_error", c.maxError},
-          {"pixels_off", c.pixelsOff}};
+  json quality = describeComparison(compareImages(image, reference));
+  quality["reference"] = name;
+  return quality;
 }
 
 /// One run over a results folder.

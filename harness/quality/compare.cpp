@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "quality/difference.h"
+#include "quality/flip.h"
+#include "quality/ssim.h"
 
 namespace oitlab {
 namespace {
@@ -30,6 +32,18 @@ Comparison compareImages(const Image& image, const Image& reference) {
   result.rmse = std::sqrt(mse);
   result.psnr = -10.0 * std::log10(mse);
   result.pixelsOff = pixels == 0 ? 0 : double(result.pixelsOffCount) / double(pixels);
+  if (pixels == 0 || !std::isfinite(result.maxError)) return result;
+  const bool linear = !image.srgb && !reference.srgb;
+  if (result.maxError == 0 && image.srgb == reference.srgb) {
+    // Exact methods give equal images, cell after cell: nothing is to be filtered for that.
+    if (std::min(image.width, image.height) >= kMinSsimSide) result.ssim = 1;
+    result.flip = 0;
+    if (linear) result.flipHdr = 0;
+    return result;
+  }
+  result.ssim = computeSsim(image, reference).mean;
+  result.flip = computeFlip(image, reference).mean;
+  if (linear) result.flipHdr = computeHdrFlip(image, reference).mean;
   return result;
 }
 

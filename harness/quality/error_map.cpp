@@ -2,19 +2,29 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "quality/colour_map.h"
 #include "quality/compare.h"
 #include "quality/difference.h"
+#include "quality/flip.h"
+#include "quality/ssim.h"
 #include "quality/tiny_font.h"
 #include "util/check.h"
+#include "util/error.h"
+#include "util/suggest.h"
 
 namespace oitlab {
 namespace {
 
 using Colour = std::array<float, 3>;
+
+constexpr std::pair<const char*, MapMetric> kMetrics[] = {{"abs", MapMetric::absolute},
+                                                          {"flip", MapMetric::flip},
+                                                          {"flip_hdr", MapMetric::flipHdr},
+                                                          {"ssim", MapMetric::ssim}};
 
 /// Outside of the colour map: an error that is not a number must not pass for a large one.
 constexpr Colour kNotFinite = {0, 1, 0};
@@ -53,21 +63,79 @@ void drawLegend(Image& map, int top, int unit, const std::string& label) {
 
 }  // namespace
 
-Image errorMap(const Image& image, const Image& reference, float scale) {
-  OITLAB_CHECK(scale > 0 && std::isfinite(scale));
+MapMetric parseMapMetric(const std::string& name) {
+  const auto found = std::find_if(std::begin(kMetrics), std::end(kMetrics),
+                                  [&](const auto& metric) { return metric.first == name; });
+  if (found == std::end(kMetrics))
+    fail<InputError>("no error map is called '{}'{}, wanted one of {}", name,
+                     didYouMean(name, mapMetricNames()), joinNames(mapMetricNames()));
+  return found->second;
+}
+
+std::vector<std::string> mapMetricNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, metric] : kMetrics) names.emplace_back(name);
+  return names;
+}
+
+Plane<float> errorPlane(const Image& image, const Image& reference, MapMetric metric) {
   const Difference difference(image, reference);
+  if (metric == MapMetric::flipHdr && (image.srgb || reference.srgb))
+    fail<InputError>("HDR-FLIP is of two linear images (.exr), found an sRGB-encoded one");
+  Plane<float> plane(image.width, image.height);
+  if (metric == MapMetric::flip) plane = computeFlip(image, reference).map;
+  if (metric == MapMetric::flipHdr) plane = computeHdrFlip(image, reference).map;
+  if (metric == MapMetric::ssim) {
+    const Ssim ssim = computeSsim(image, reference);
+    // Rounding must not make equal windows differ by less than nothing.
+    std::transform(ssim.map.values.begin(), ssim.map.values.end(), plane.values.begin(),
+                   [](double similarity) { return float(std::max(0.0, 1 - similarity)); });
+  }
+  for (std::size_t i = 0; i < plane.values.size(); ++i) {
+    const double error = difference.largestAt(i);
+    if (metric == MapMetric::absolute || !std::isfinite(error)) plane.values[i] = float(error);
+  }
+  return plane;
+}
+
+Image drawMap(const Plane<float>& values, float scale) {
+  OITLAB_CHECK(scale > 0 && std::isfinite(scale));
   // The legend grows with the picture, which is looked at as a whole.
-  const int unit = std::clamp(image.width / 320, 1, 6);
+  const int unit = std::clamp(values.width / 320, 1, 6);
   const int legendHeight = tinyTextHeight(unit) + 4 * unit;
 
-  Image map = makePaper(std::max(image.width, kMinWidth), image.height + legendHeight);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const double error = difference.largestAt(std::size_t(y) * image.width + x);
-      setPixel(map, x, y, std::isfinite(error) ? infernoColour(error / scale) : kNotFinite);
+  Image map = makePaper(std::max(values.width, kMinWidth), values.height + legendHeight);
+  for (int y = 0; y < values.height; ++y)
+    for (int x = 0; x < values.width; ++x) {
+      const float value = values.row(y)[x];
+      setPixel(map, x, y, std::isfinite(value) ? infernoColour(double(value) / scale) : kNotFinite);
     }
-  drawLegend(map, image.height, unit, fmt::format("{:.3g}", scale));
+  drawLegend(map, values.height, unit, fmt::format("{:.3g}", scale));
   return map;
+}
+
+Image planeImage(const Plane<float>& values) {
+  Image image{values.width, values.height, /*srgb=*/false, {}};
+  image.rgba.reserve(4 * values.values.size());
+  for (const float value : values.values)
+    image.rgba.insert(image.rgba.end(), {value, value, value, 1.0F});
+  return image;
+}
+
+void writeMap(const std::filesystem::path& path, const Plane<float>& values, float scale) {
+  const std::string extension = path.extension().string();
+  const bool raw = extension == ".exr" || extension == ".EXR";
+  writeImage(path, raw ? planeImage(values) : drawMap(values, scale));
+}
+
+float largestFinite(const Plane<float>& values, float least) {
+  for (const float value : values.values)
+    if (std::isfinite(value)) least = std::max(least, value);
+  return least;
+}
+
+Image errorMap(const Image& image, const Image& reference, float scale) {
+  return drawMap(errorPlane(image, reference, MapMetric::absolute), scale);
 }
 
 }  // namespace oitlab

@@ -77,7 +77,8 @@ def make_cell(scene: str = "boxes", method: str = "blend", parameters: dict | No
         "quality": None if rmse is None else {
             "reference": "reference", "rmse": rmse, "max_error": rmse * 4,
             "psnr": None if rmse == 0 else round(-20 * float(numpy.log10(rmse)), 3),
-            "pixels_off": min(1.0, rmse * 6)},
+            "pixels_off": min(1.0, rmse * 6), "ssim": 1 - rmse * 2, "flip": min(1.0, rmse * 3),
+            "flip_hdr": None},
         "counters": {"fragments": triangles * 7, "overflow": 0},
         "memory_bytes": {"total": 3 * 2**20 + triangles, "buffers": {"fragment pool": triangles,
                                                                      "colour": 3 * 2**20}},

@@ -34,6 +34,12 @@ def test_share_never_rounds_an_error_to_zero(value, text):
     assert formats.share(value) == text
 
 
+@pytest.mark.parametrize("ssim, text", [
+    (1, "1.0000"), (0.999999, "0.9999"), (0.96582, "0.9658"), (-0.00372, "-0.0038"), (None, "–")])
+def test_similarity_is_1_only_when_equal(ssim, text):
+    assert formats.similarity(ssim) == (text if ssim is not None else formats.NOTHING)
+
+
 @pytest.mark.parametrize("psnr, rmse, text", [
     (None, 0.0, "∞ (equal)"), (None, None, "–"), (33.333, 0.02, "33.3"),
     (None, 0.02, "–")])  # a cell that contradicts itself must not look equal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "image/image.h"
+#include "quality/plane.h"
+
+namespace oitlab {
+
+/// Smaller images have no pixel whose whole window lies within them.
+inline constexpr int kMinSsimSide = 11;
+
+/// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of display values: Gaussian window
+/// of sigma 1.5 cut at radius 5, K1 = 0.01, K2 = 0.03, range 1, population covariances. The same
+/// number as scikit-image's structural_similarity(gaussian_weights=True, sigma=1.5,
+/// use_sample_covariance=False, channel_axis=-1, data_range=1) of the sRGB-encoded images: the mean
+/// over R, G and B and over the pixels whose whole window lies within the image.
+struct Ssim {
+  /// Per pixel, mean of R, G and B, in [-1, 1]; 1: the windows are equal. Within 5 pixels of an
+  /// edge the window sees the edge's value repeated.
+  Plane<double> map;
+  /// Empty when a side has fewer than kMinSsimSide pixels.
+  std::optional<double> mean;
+};
+
+/// Linear images are clamped to [0, 1] and sRGB-encoded first. NaN and infinity count as 0, so that
+/// the caller has to look for them. Symmetric. Sizes must be equal (checked).
+Ssim computeSsim(const Image& image, const Image& reference);
+
+}  // namespace oitlab
