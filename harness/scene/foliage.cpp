@@ -77,7 +77,7 @@ void addTrunk(MeshBuilder& builder, const TrunkShape& shape, const Paint& paint)
     glm::vec3 out = randomDirection(random);
     out.y = std::abs(out.y) * 0.8f;
     wander(from, top + shape.crown * out * random.uniform(0.6f, 0.95f), 0.12f * shape.crown.x,
-           0.3f * shape.radius, 0.05f * shape.radius);
+           0.2f * shape.radius, 0.04f * shape.radius);
   }
 }
 

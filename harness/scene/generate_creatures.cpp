@@ -56,7 +56,9 @@ glm::vec3 spine(float t) {
 
 float girth(float t) {
   const float body =
-      0.02f + 0.27f * std::pow(std::sin(std::numbers::pi_v<float> * std::pow(t, 0.8f)), 0.8f);
+      0.012f +
+      0.25f *
+          std::pow(std::max(std::sin(std::numbers::pi_v<float> * std::pow(t, 1.25f)), 0.0f), 1.6f);
   const float head = 0.13f * std::exp(-std::pow((t - 0.93f) / 0.035f, 2.0f));
   return std::max(body * (1.0f - 0.55f * glm::smoothstep(0.65f, 0.9f, t)), 0.015f) + head;
 }
@@ -89,7 +91,7 @@ void dragonStructure(MeshBuilder& builder, float fineness) {
   const std::uint32_t material = builder.blendMaterial(kOpacity);
   const Paint skin{{0.35f, 0.6f, 0.42f}, material}, horn{{0.8f, 0.7f, 0.45f}, material};
   scaly(builder, scaledCount(300, s, 5), scaledCount(1120, s, 12), 130.0f, skin, spine, girth);
-  for (const float at : {0.34f, 0.7f})  // legs
+  for (const float at : {0.44f, 0.7f})  // legs
     for (const float side : {1.0f, -1.0f}) {
       const glm::vec3 hip = spine(at), foot = {hip.x + 0.18f, 0.0f, hip.z + side * 0.36f};
       const glm::vec3 knee = glm::mix(hip, foot, 0.5f) + glm::vec3(-0.16f, 0.08f, side * 0.16f);
@@ -126,7 +128,7 @@ void dragonStructure(MeshBuilder& builder, float fineness) {
 
 void buildDragon(MeshBuilder& builder, float detail) {
   buildToCount(builder, 871000.0 * detail, dragonStructure);
-  builder.view("default", orbitCamera({0.0f, 0.6f, 0}, 3.76f, 0.5f, 0.25f, 0.8726646f));
+  builder.view("default", orbitCamera({0.0f, 0.6f, 0}, 3.234f, 0.5f, 0.25f, 0.8726646f));
 }
 
 }  // namespace

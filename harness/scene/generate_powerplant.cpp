@@ -133,7 +133,7 @@ void plantStructure(MeshBuilder& builder, float fineness) {
   }
   for (const float z : {-26.0f, 26.0f})  // chimneys, lined
     for (const float lining : {1.0f, 0.8f, 0.6f})
-      lathe(builder, {{38.0f, 0, z}}, scaledCount(90, s, 6), scaledCount(220, s, 4),
+      lathe(builder, {{-38.0f, 0, z}}, scaledCount(90, s, 6), scaledCount(220, s, 4),
             shop.paint(0.72f, 0.6f, 0.55f),
             [&](float v) { return glm::vec2(lining * (4.0f - 1.6f * v), 75.0f * v); });
   const int runs = scaledCount(7200, s, 8);

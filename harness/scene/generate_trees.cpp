@@ -62,9 +62,9 @@ void oakStructure(MeshBuilder& builder, float fineness) {
            {.height = 5.0f,
             .radius = 0.55f,
             .crown = crown,
-            .branches = scaledCount(50, s, 2),
+            .branches = scaledCount(30, s, 2),
             .sides = scaledCount(6, s, 3),
-            .segments = scaledCount(10, s, 1),
+            .segments = scaledCount(17, s, 1),
             .seed = 9},
            {kBark, bark});
   // Boughs: the crown is a ball of balls, with gaps to look through.
@@ -76,7 +76,7 @@ void oakStructure(MeshBuilder& builder, float fineness) {
     addCards(builder,
              {.center = glm::vec3(0, 5.2f, 0) + crown * out * random.uniform(0.35f, 0.85f),
               .radii = glm::vec3(random.uniform(1.5f, 2.3f)) * glm::vec3(1.0f, 0.7f, 1.0f),
-              .halfSize = sizeAt(0.155f, fineness),
+              .halfSize = sizeAt(0.269f, fineness),
               .quads = scaledCount(564, fineness, 1),
               .pentagons = scaledCount(84, fineness, 0),
               .seed = std::uint64_t(100 + i)},
@@ -86,7 +86,9 @@ void oakStructure(MeshBuilder& builder, float fineness) {
 
 void buildOak(MeshBuilder& builder, float detail) {
   buildToCount(builder, 37000.0 * detail, oakStructure);
-  builder.view("default", {.eye = {0, 6.5f, 2.7f}, .target = {0, 6.6f, -2.0f}, .near = 0.01f});
+  builder.view(
+      "default",
+      {.eye = {2.2f, 1.8f, 2.2f}, .target = {0.6f, 6.6f, -2.2f}, .fovY = 0.66f, .near = 0.01f});
 }
 
 void buildSmoke(MeshBuilder& builder, float detail) {
