@@ -22,6 +22,6 @@ target_link_libraries(oitlab_dependencies INTERFACE
   Threads::Threads ${CMAKE_DL_LIBS}
   glslang::glslang glslang::SPIRV glslang::glslang-default-resource-limits
   OpenEXR::OpenEXR PNG::PNG fmt::fmt nlohmann_json::nlohmann_json
-  tomlplusplus::tomlplusplus CLI11::CLI11 PkgConfig::XXHASH TinyGLTF::TinyGLTF PkgConfig::STB)
+  tomlplusplus::tomlplusplus CLI11::CLI11 PkgConfig::XXHASH TinyGLTF::TinyGLTF tinyobjloader::tinyobjloader PkgConfig::STB)
 target_compile_definitions(oitlab_dependencies INTERFACE
   GLM_FORCE_RADIANS GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_ENABLE_EXPERIMENTAL)

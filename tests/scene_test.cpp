@@ -8,6 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <xxhash.h>
+
+#include "scene/coverage.h"
+#include "scene/shapes.h"
 #include "support/glb.h"
 #include "support/temporary_folder.h"
 #include "util/error.h"
@@ -100,7 +104,7 @@ TEST(Generated, TheCatalogueListsEachOnceAndAllAreWellFormed) {
     SCOPED_TRACE(info.name);
     EXPECT_TRUE(names.insert(info.name).second);
     EXPECT_FALSE(info.summary.empty());
-    const Scene scene = loadScene({info.name, {}, 0.1f});
+    const Scene scene = loadScene({info.name, {}, 0.01f});
     EXPECT_EQ(scene.name, info.name);
     EXPECT_TRUE(scene.repairs.empty());
     EXPECT_TRUE(scene.views.contains("default"));
@@ -158,6 +162,157 @@ TEST(Generated, TheTeapotHoldsWater) {
   EXPECT_GT(signedVolume(scene), 0.0);
 }
 
+// The LucidRaster paper's triangle counts; smoke's are those of the paper on backwards memory
+// allocation.
+const std::map<std::string, double> kPaperTriangles = {
+    {"boxes", 12000},    {"bunny", 144000},     {"conference", 331000},   {"dragon", 871000},
+    {"gallery", 999000}, {"hairball", 2880000}, {"powerplant", 12759000}, {"sanmiguel", 5617000},
+    {"scrubpine", 527},  {"smoke", 13468},      {"sponza_like", 262000},  {"teapot", 16000},
+    {"whiteoak", 37000}};
+
+TEST(Generated, CountsAreThePapersAndScaleWithDetail) {
+  for (const auto& [name, triangles] : kPaperTriangles) {
+    SCOPED_TRACE(name);
+    EXPECT_NEAR(double(generatedSize(name).triangles), triangles, 0.1 * triangles);
+    for (const float detail : {0.5f, 0.1f, 0.03f}) {
+      SCOPED_TRACE(detail);
+      // Few triangles come in steps.
+      const double wanted = triangles * double(detail);
+      EXPECT_NEAR(double(generatedSize(name, detail).triangles), wanted, 0.25 * wanted + 35);
+    }
+  }
+}
+
+TEST(Generated, TheCountIsThatOfTheSceneMade) {
+  for (const SceneInfo& info : sceneCatalogue()) {
+    SCOPED_TRACE(info.name);
+    for (const float detail : {0.002f, 0.03f}) {
+      const SceneSize size = generatedSize(info.name, detail);
+      const Scene scene = loadScene({info.name, {}, detail});
+      EXPECT_EQ(size.triangles, scene.triangles.size());
+      EXPECT_EQ(size.vertices, scene.vertices.size());
+      EXPECT_EQ(size.materials, scene.materials.size());
+      EXPECT_EQ(size.textures, scene.textures.size());
+      EXPECT_EQ(size.views.size(), scene.views.size());
+      EXPECT_EQ(size.paths.size(), scene.paths.size());
+    }
+  }
+  for (const char* name : {"boxes", "bunny", "scrubpine", "smoke", "teapot", "whiteoak"})
+    EXPECT_EQ(generatedSize(name).triangles, loadScene({name}).triangles.size()) << name;
+  EXPECT_THAT(messageOf<InputError>([] { generatedSize("nothing"); }), HasSubstr("nothing"));
+}
+
+std::uint64_t hashOf(const Scene& scene) {
+  return XXH3_64bits(scene.vertices.data(), scene.vertices.size() * sizeof(Vertex)) ^
+         XXH3_64bits(scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
+}
+
+TEST(Generated, TwiceTheSame) {
+  for (const SceneInfo& info : sceneCatalogue())
+    EXPECT_EQ(hashOf(loadScene({info.name, {}, 0.02f})), hashOf(loadScene({info.name, {}, 0.02f})))
+        << info.name;
+}
+
+TEST(Generated, AllIsFiniteAndBlends) {
+  for (const SceneInfo& info : sceneCatalogue()) {
+    SCOPED_TRACE(info.name);
+    const Scene scene = loadScene({info.name, 0.3f, 0.02f});
+    for (const Vertex& v : scene.vertices) {
+      ASSERT_TRUE(std::isfinite(v.position.x + v.position.y + v.position.z + v.uv.x + v.uv.y));
+      ASSERT_NEAR(glm::length(unpackNormal(v.normal)), 1.0f, 1e-3f);
+    }
+    for (const Material& material : scene.materials) {
+      EXPECT_EQ(material.alphaMode, AlphaMode::blend);
+      EXPECT_EQ(material.baseColor.a, 0.3f);
+      EXPECT_LT(material.texture, int(scene.textures.size()));
+    }
+    for (const Texture& texture : scene.textures) {
+      EXPECT_EQ(texture.rgba.size(), 4u * std::size_t(texture.width) * std::size_t(texture.height));
+      EXPECT_TRUE(texture.hasAlpha());
+    }
+  }
+}
+
+TEST(Generated, ClosedShapesAreClosedAndFaceOutwards) {
+  for (const float detail : {0.003f, 0.05f}) {
+    const Scene bunny = loadScene({"bunny", {}, detail});
+    EXPECT_EQ(openEdges(bunny), 0u);
+    EXPECT_GT(signedVolume(bunny), 1.0);
+    EXPECT_GT(signedVolume(loadScene({"dragon", {}, detail})), 0.1);
+  }
+}
+
+TEST(Coverage, CountsPixelCentres) {
+  MeshBuilder builder("quads");
+  const std::uint32_t material = builder.blendMaterial(0.5f);
+  builder.quad({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, glm::vec3(1), material);
+  builder.quad({0, 0, -1}, {0, 1, 0}, {1, 0, 0}, glm::vec3(1), material);  // seen from behind
+  builder.quad({9, 0, 0}, {1, 0, 0}, {0, 1, 0}, glm::vec3(1), material);   // outside
+  builder.quad({0, 0, 3}, {1, 0, 0}, {0, 1, 0}, glm::vec3(1), material);   // behind the eye
+  const Scene scene = builder.take();
+  const Camera camera{.eye = {0, 0, 1}, .fovY = kTurn / 4.0f, .near = 0.1f};
+  const Coverage coverage = measureCoverage(scene, camera, 40, 20);
+  // At distance 1 a pixel is 0.1 wide, at distance 2 0.2: both quads fill 10 x 10.
+  EXPECT_EQ(coverage.samples, 200u);
+  EXPECT_EQ(coverage.coveredPixels, 100u);
+  EXPECT_EQ(coverage.peakDepth, 2u);
+  EXPECT_EQ(coverage.visible, 4u);
+  EXPECT_EQ(coverage.visibleFront, 2u);
+}
+
+TEST(Coverage, CutsAtTheNearPlane) {
+  MeshBuilder builder("floor");
+  const std::uint32_t material = builder.blendMaterial(0.5f);
+  builder.quad({0, -1, 0}, {1000, 0, 0}, {0, 0, -1000}, glm::vec3(1), material);
+  const Camera camera{.eye = {0, 0, 0.5f}, .target = {0, 0, -1}, .near = 0.01f};
+  // The lower half of the frame, but for a row at the horizon at most.
+  const double samples = double(measureCoverage(builder.take(), camera, 100, 100).samples);
+  EXPECT_NEAR(samples, 5000.0, 100.0);
+}
+
+TEST(Coverage, QuadsAreGreedyPairs) {
+  MeshBuilder builder("fans");
+  const std::uint32_t material = builder.blendMaterial(0.5f);
+  const Paint paint{glm::vec3(1), material};
+  const auto rim = [](int k) { return glm::vec3(std::cos(float(k)), std::sin(float(k)), 0); };
+  fan(builder, 6, {0, 0, 1}, paint, rim);  // four triangles
+  fan(builder, 5, {0, 0, 1}, paint, rim);  // three
+  const QuadCount quads = countQuads(builder.take());
+  EXPECT_EQ(quads.quads, 4u);
+  EXPECT_EQ(quads.degenerate, 1u);
+  EXPECT_EQ(countQuads(loadScene({"boxes"})).quads, 6000u);
+}
+
+// The figures of docs/scenes.md that the paper's tables rest on; samples at 2560x1330.
+TEST(Generated, DefaultViewsTakeThePapersSamples) {
+  const std::map<std::string, double> samples = {
+      {"boxes", 12.11}, {"bunny", 0.74},        {"conference", 5.31}, {"planes", 48.04},
+      {"teapot", 1.71}, {"sponza_like", 24.00}, {"scrubpine", 3.26},  {"whiteoak", 122.00}};
+  for (const auto& [name, millions] : samples) {
+    const Scene scene = loadScene({name});
+    const double found =
+        double(measureCoverage(scene, findView(scene, "default"), 640, 332).samples);
+    const double scaled = found * (2560.0 * 1330.0) / (640.0 * 332.0) * 1e-6;
+    EXPECT_NEAR(scaled, millions, (name == "planes" ? 0.03 : 0.2) * millions) << name;
+  }
+}
+
+TEST(CameraPath, GoesThroughItsKeyframes) {
+  const auto at = [](float x, float y) { return Camera{.eye = {x, y, 1}, .target = {x, y, 0}}; };
+  const CameraPath path({at(0, 0), at(1, 2), at(2, 0), at(3, 1)});
+  EXPECT_TRUE(near(path.at(0).eye, {0, 0, 1}, 1e-5f));
+  EXPECT_TRUE(near(path.at(1.0f / 3).eye, {1, 2, 1}, 1e-5f));
+  EXPECT_TRUE(near(path.at(2.0f / 3).target, {2, 0, 0}, 1e-5f));
+  EXPECT_TRUE(near(path.at(1).eye, {3, 1, 1}, 1e-5f));
+  // Evenly along where the keyframes are evenly apart, and no jump in speed at a keyframe.
+  EXPECT_NEAR(path.at(0.5f).eye.x, 1.5f, 1e-5f);
+  const float h = 1e-3f, t = 1.0f / 3;
+  const glm::vec3 before = (path.at(t).eye - path.at(t - h).eye) / h;
+  const glm::vec3 after = (path.at(t + h).eye - path.at(t).eye) / h;
+  EXPECT_TRUE(near(before, after, 0.2f));
+  EXPECT_EQ(CameraPath({at(5, 5)}).at(0.7f).eye, glm::vec3(5, 5, 1));
+}
+
 TEST(LoadScene, KnobsOutOfRangeAreRefused) {
   const auto message = [](SceneSpec spec) {
     return messageOf<InputError>([&] { loadScene(spec); });
@@ -175,7 +330,8 @@ TEST(LoadScene, UnknownNamesGetASuggestion) {
               AllOf(HasSubstr("'boxs'"), HasSubstr("did you mean 'boxes'"), HasSubstr("teapot")));
   EXPECT_THAT(messageOf<InputError>([] { loadScene({"no/such/file.glb"}); }),
               HasSubstr("no/such/file.glb"));
-  EXPECT_THAT(messageOf<InputError>([] { loadScene({"."}); }), HasSubstr("expected a .glb"));
+  EXPECT_THAT(messageOf<InputError>([] { loadScene({"."}); }),
+              AllOf(HasSubstr("expected a .glb"), HasSubstr(".obj")));
 }
 
 TEST(FindView, NamesThenForms) {
@@ -242,6 +398,29 @@ TEST_F(NamedViews, TheFileBesideTheSceneHasTheLastWord) {
   EXPECT_EQ(findView(scene, "side").eye, glm::vec3(3, 0, 0));
 }
 
+TEST_F(NamedViews, PathsAreViewsToo) {
+  toml("x.toml", "[paths]\nfly = ['look:0,0,5,0,0,0', 'look:4,0,5,4,0,0']\n");
+  const Scene scene = loadScene({path_});
+  EXPECT_TRUE(near(findView(scene, "path:fly@0.25").eye, {1, 0, 5}, 1e-5f));
+  const auto message = [&](const char* view) {
+    return messageOf<InputError>([&] { findView(scene, view); });
+  };
+  EXPECT_THAT(message("path:fli@0.5"), AllOf(HasSubstr("'fli'"), HasSubstr("did you mean 'fly'")));
+  EXPECT_THAT(message("path:fly@1.5"), HasSubstr("'1.5'"));
+  EXPECT_THAT(message("path:fly@"), HasSubstr("from 0 to 1"));
+  EXPECT_THAT(message("path:fly"), HasSubstr("path:NAME@T"));
+}
+
+TEST_F(NamedViews, GeneratedScenesHaveTheirOwnTables) {
+  toml("experiments/scenes.toml",
+       "[x]\na = 'look:1,0,0,0,0,0'\n[x.paths]\nfly = ['look:1,0,0,0,0,0']\n"
+       "[boxes]\nwrong = 'look:1,0,0,0,0,0'\n[generated.boxes]\nb = 'look:2,0,0,0,0,0'\n");
+  EXPECT_TRUE(loadScene({path_}).paths.contains("fly"));
+  const Scene boxes = loadScene({"boxes"});
+  EXPECT_TRUE(boxes.views.contains("b"));
+  EXPECT_FALSE(boxes.views.contains("wrong"));
+}
+
 TEST_F(NamedViews, ErrorsNameFileAndLine) {
   const auto message = [&](const char* text) {
     toml("x.toml", text);
@@ -252,6 +431,9 @@ TEST_F(NamedViews, ErrorsNameFileAndLine) {
   EXPECT_THAT(message("[views]\na = 'orbit:1'\n"),
               AllOf(HasSubstr("x.toml:2"), HasSubstr("orbit:1")));
   EXPECT_THAT(message("views = 1\n"), HasSubstr("x.toml:1"));
+  EXPECT_THAT(message("paths = 1\n"), HasSubstr("x.toml:1"));
+  EXPECT_THAT(message("[paths]\nfly = []\n"), AllOf(HasSubstr("x.toml:2"), HasSubstr("'fly'")));
+  EXPECT_THAT(message("[paths]\nfly = ['look:1,2,3,4,5,6',\n 3]\n"), HasSubstr("x.toml:3"));
 }
 
 TEST_F(NamedViews, ADataRootThatIsNotThereIsAnError) {

@@ -15,6 +15,7 @@ enum ExitCode { exitDone = 0, exitSomeFailed = 1, exitBadInput = 2, exitNoDevice
 // Each adds its verb to the program and sets `action` when the verb is given.
 void addInfo(CLI::App& program, Action& action);
 void addList(CLI::App& program, Action& action);
+void addScene(CLI::App& program, Action& action);
 void addRender(CLI::App& program, Action& action);
 void addRun(CLI::App& program, Action& action);
 void addCompare(CLI::App& program, Action& action);

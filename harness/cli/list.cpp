@@ -1,7 +1,6 @@
 #include "cli/commands.h"
 #include "experiment/describe.h"
 #include "method/method.h"
-#include "scene/quads.h"
 #include "scene/scene.h"
 #include "util/error.h"
 #include "util/suggest.h"
@@ -32,26 +31,22 @@ int listMethods(bool asJson) {
 int listScenes(bool asJson) {
   nlohmann::json list = nlohmann::json::array();
   for (const SceneInfo& info : sceneCatalogue()) {
-    const Scene scene = loadScene({info.name, {}, 1.0f});
-    const QuadMesh quads = cachedQuads(scene);
-    std::vector<std::string> views;
-    for (const auto& [name, camera] : scene.views) views.push_back(name);
+    const SceneSize size = generatedSize(info.name);
     list.push_back({{"name", info.name},
                     {"summary", info.summary},
-                    {"triangles", scene.triangles.size()},
-                    {"quads", quads.quads.size()},
-                    {"degenerate_percent", quads.degeneratePercent()},
-                    {"vertices", scene.vertices.size()},
-                    {"materials", scene.materials.size()},
-                    {"textures", scene.textures.size()},
-                    {"views", views}});
+                    {"triangles", size.triangles},
+                    {"vertices", size.vertices},
+                    {"materials", size.materials},
+                    {"textures", size.textures},
+                    {"views", size.views},
+                    {"paths", size.paths}});
     if (!asJson)
-      fmt::print("{:<12} {:>9} triangles   {}\n", info.name, scene.triangles.size(), info.summary);
+      fmt::print("{:<12} {:>9} triangles   {}\n", info.name, size.triangles, info.summary);
   }
   if (asJson)
     fmt::print("{}\n", nlohmann::json{{"scenes", list}}.dump(2));
   else
-    fmt::print("and any .glb or .gltf file, by its path\n");
+    fmt::print("and any .glb, .gltf or .obj file, by its path\n");
   return exitDone;
 }
 

@@ -38,6 +38,7 @@ int runProgram(int argc, char** argv) {
   Action action;
   addInfo(program, action);
   addList(program, action);
+  addScene(program, action);
   addRender(program, action);
   addRun(program, action);
   addCompare(program, action);

@@ -24,9 +24,8 @@ void addBox(MeshBuilder& builder, glm::vec3 center, glm::vec3 color, std::uint32
   }
 }
 
-Scene makeBoxes(float detail) {
+void buildBoxes(MeshBuilder& builder, float detail) {
   const int n = std::max(1, int(std::lround(float(kBoxesPerAxis) * std::cbrt(detail))));
-  MeshBuilder builder("boxes");
   const std::uint32_t material = builder.blendMaterial(kOpacity);
   Pcg32 random(kSeed);
   for (int z = 0; z < n; ++z)
@@ -39,13 +38,12 @@ Scene makeBoxes(float detail) {
         addBox(builder, center, color, material);
       }
   builder.view("default", orbitCamera(glm::vec3(0.0f), 10.0f, 0.5f, 0.8f, 1.0471976f));
-  return builder.take();
 }
 
 }  // namespace
 
 const GeneratedScene generated::boxes{
     "boxes", "10x10x10 jittered boxes, opacity 0.5: even, deep layering; 12,000 triangles",
-    makeBoxes};
+    buildBoxes};
 
 }  // namespace oitlab

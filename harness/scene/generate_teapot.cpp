@@ -162,18 +162,17 @@ void tessellate(MeshBuilder& builder, const Patch& patch, int n, std::uint32_t m
     }
 }
 
-Scene makeTeapot(float detail) {
+void buildTeapot(MeshBuilder& builder, float detail) {
   const int n = std::max(1, int(std::lround(kSegments * std::sqrt(detail))));
-  MeshBuilder builder("teapot");
   const std::uint32_t material = builder.blendMaterial(kOpacity);
   for (const Patch& patch : teapotPatches()) tessellate(builder, patch, n, material);
-  return builder.take();
+  builder.view("default", orbitCamera({0.2f, 1.5f, 0.0f}, 5.8f, 0.61f, 0.33f, 0.8726646f));
 }
 
 }  // namespace
 
 const GeneratedScene generated::teapot{
     "teapot", "the Utah teapot from its 32 Bezier patches, opacity 0.5; 16,256 triangles",
-    makeTeapot};
+    buildTeapot};
 
 }  // namespace oitlab

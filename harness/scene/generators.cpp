@@ -1,5 +1,11 @@
 #include "scene/generators.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "scene/views.h"
+#include "util/error.h"
+
 namespace oitlab {
 
 std::span<const GeneratedScene* const> generatedScenes() {
@@ -9,11 +15,58 @@ std::span<const GeneratedScene* const> generatedScenes() {
   return kScenes;
 }
 
+const GeneratedScene* findGenerated(const std::string& name) {
+  for (const GeneratedScene* scene : generatedScenes())
+    if (scene->name == name) return scene;
+  return nullptr;
+}
+
 std::vector<SceneInfo> sceneCatalogue() {
   std::vector<SceneInfo> catalogue;
   for (const GeneratedScene* scene : generatedScenes())
     catalogue.push_back({scene->name, scene->summary});
   return catalogue;
+}
+
+SceneSize generatedSize(const std::string& name, float detail) {
+  const GeneratedScene* generated = findGenerated(name);
+  if (!generated) fail<InputError>("scene '{}' is not a generated one", name);
+  MeshBuilder builder(name, MeshBuilder::Mode::count);
+  generated->build(builder, detail);
+  SceneSize size{.triangles = builder.triangleCount(), .vertices = builder.vertexCount()};
+  Scene scene = builder.take();
+  size.materials = scene.materials.size();
+  size.textures = scene.textures.size();
+  scene.views.try_emplace("default");
+  addNamedViews(scene, {});
+  for (const auto& [view, camera] : scene.views) size.views.push_back(view);
+  for (const auto& [path, cameras] : scene.paths) size.paths.push_back(path);
+  return size;
+}
+
+int scaledCount(float count, float fineness, int least) {
+  return std::max(least, int(std::lround(count * fineness)));
+}
+
+void buildToCount(MeshBuilder& builder, double triangles,
+                  void (*structure)(MeshBuilder& builder, float fineness)) {
+  const auto countAt = [&](double logFineness) {
+    MeshBuilder trial(builder.name(), MeshBuilder::Mode::count);
+    structure(trial, float(std::exp(logFineness)));
+    return std::pair(trial.triangleCount(), trial.vertexCount());
+  };
+  // Between steps of a coarse structure the nearer one is taken.
+  double low = std::log(1e-3), high = std::log(1e3);
+  for (int i = 0; i < 24; ++i) {
+    const double middle = 0.5 * (low + high);
+    (double(countAt(middle).first) < triangles ? low : high) = middle;
+  }
+  const auto [below, ignored] = countAt(low);
+  const auto [above, ignoredToo] = countAt(high);
+  const double fineness = triangles - double(below) < double(above) - triangles ? low : high;
+  const auto [count, vertices] = countAt(fineness);
+  builder.reserve(builder.vertexCount() + vertices, builder.triangleCount() + count);
+  structure(builder, float(std::exp(fineness)));
 }
 
 }  // namespace oitlab

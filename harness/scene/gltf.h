@@ -11,10 +11,9 @@ namespace oitlab {
 /// primitives, triangles. What can be mended is, and is counted in Scene::repairs; for the rest
 /// InputError, naming file and place. Bounds and the default view are left to loadScene().
 ///
-/// KHR_materials_transmission becomes opacity: baseColor.a is scaled by 1 - transmissionFactor, but
-/// not below 0.1 (a clear pane reflects about a tenth of a uniform surrounding, and an invisible
-/// one would be nothing to compare). The material becomes BLEND; a MASK one keeps its cut-out, its
-/// cutoff scaled alike.
+/// KHR_materials_transmission becomes opacity: baseColor.a is scaled by 1 - transmissionFactor,
+/// exactly, so that a clear pane is invisible (an opacity override makes it seen). The material
+/// becomes BLEND; a MASK one keeps its cut-out, its cutoff scaled alike.
 Scene loadGltf(const std::filesystem::path& path);
 
 }  // namespace oitlab

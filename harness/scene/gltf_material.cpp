@@ -2,17 +2,13 @@
 #include <cmath>
 #include <span>
 
-#include <stb_image.h>
-
 #include "scene/gltf_parts.h"
+#include "scene/texture_file.h"
 #include "util/error.h"
 #include "util/parallel.h"
 
 namespace oitlab {
 namespace {
-
-constexpr float kLeastGlassOpacity = 0.1f;  // see gltf.h
-constexpr int kLargestImage = 16384;        // texels a side: what every device can hold
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name) {
   const auto found = extensions.find(name);
@@ -64,7 +60,7 @@ Material readMaterial(const tinygltf::Material& from) {
   if (const auto* glass = extension(from.extensions, "KHR_materials_transmission")) {
     const float transmission = share(number(*glass, "transmissionFactor", 0.0));
     if (transmission > 0.0f) {
-      const float opacity = std::max(1.0f - transmission, kLeastGlassOpacity);
+      const float opacity = 1.0f - transmission;  // see gltf.h
       material.baseColor.a *= opacity;
       material.alphaCutoff *= opacity;
       material.alphaMode = AlphaMode::blend;
@@ -78,22 +74,6 @@ Material readMaterial(const tinygltf::Material& from) {
 std::span<const unsigned char> encodedImage(const GltfFile& file, const tinygltf::Image& image) {
   if (image.bufferView >= 0) return gltfBytes(file, image.bufferView, file.path);
   return image.image;
-}
-
-// False when there is no image to be had from it.
-bool decode(std::span<const unsigned char> bytes, Texture& texture) {
-  int width = 0, height = 0, channels = 0;
-  const int size = int(std::min<std::size_t>(bytes.size(), 0x7fffffff));
-  if (size == 0 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) ||
-      width > kLargestImage || height > kLargestImage)
-    return false;
-  stbi_uc* texels = stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4);
-  if (!texels) return false;
-  texture.width = width;
-  texture.height = height;
-  texture.rgba.assign(texels, texels + 4 * std::size_t(width) * std::size_t(height));
-  stbi_image_free(texels);
-  return true;
 }
 
 // The image of a material's base colour, -1 when it has none, -2 when it has one that is missing.
@@ -120,7 +100,7 @@ std::vector<int> readTextures(const GltfFile& file, Scene& scene) {
   parallelFor(used.size(), [&](std::size_t i) {
     const tinygltf::Image& image = images[used[i]];
     decoded[i].name = !image.name.empty() ? image.name : fmt::format("image {}", used[i]);
-    good[i] = decode(encodedImage(file, image), decoded[i]);
+    good[i] = decodeTexture(encodedImage(file, image), decoded[i]);
   });
   for (std::size_t i = 0; i < used.size(); ++i)
     if (good[i]) {

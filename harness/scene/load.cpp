@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 
 #include "scene/generators.h"
 #include "scene/gltf.h"
+#include "scene/obj.h"
 #include "scene/scene.h"
 #include "scene/views.h"
 #include "util/error.h"
@@ -18,17 +20,17 @@ void checkShare(const std::string& source, const char* what, float value) {
                      value);
 }
 
-const GeneratedScene* findGenerated(const std::string& name) {
-  for (const GeneratedScene* scene : generatedScenes())
-    if (scene->name == name) return scene;
-  return nullptr;
-}
-
 [[noreturn]] void failUnknown(const std::string& source) {
   std::vector<std::string> names;
   for (const GeneratedScene* scene : generatedScenes()) names.emplace_back(scene->name);
   fail<InputError>("scene '{}': neither a file nor a built-in scene{}; built in are {}", source,
                    didYouMean(source, names), joinNames(names));
+}
+
+Scene generate(const GeneratedScene& generated, float detail) {
+  MeshBuilder builder(generated.name);
+  generated.build(builder, detail);
+  return builder.take();
 }
 
 Scene loadFile(const SceneSpec& spec) {
@@ -38,13 +40,14 @@ Scene loadFile(const SceneSpec& spec) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return std::tolower(c); });
-  if ((extension != ".glb" && extension != ".gltf") || std::filesystem::is_directory(path, ignored))
-    fail<InputError>("{}: expected a .glb or .gltf file", spec.source);
+  const bool gltf = extension == ".glb" || extension == ".gltf";
+  if ((!gltf && extension != ".obj") || std::filesystem::is_directory(path, ignored))
+    fail<InputError>("{}: expected a .glb, .gltf or .obj file", spec.source);
   // A knob without effect would end up as a column of the results that says something untrue.
   if (spec.detail != 1.0f)
     fail<InputError>("{}: detail is {}, but only generated scenes have that knob", spec.source,
                      spec.detail);
-  return loadGltf(path);
+  return gltf ? loadGltf(path) : loadObj(path);
 }
 
 }  // namespace
@@ -53,7 +56,7 @@ Scene loadScene(const SceneSpec& spec) {
   checkShare(spec.source, "detail", spec.detail);
   if (spec.opacity) checkShare(spec.source, "opacity", *spec.opacity);
   const GeneratedScene* generated = findGenerated(spec.source);
-  Scene scene = generated ? generated->make(spec.detail) : loadFile(spec);
+  Scene scene = generated ? generate(*generated, spec.detail) : loadFile(spec);
   computeBounds(scene);
   if (spec.opacity) overrideOpacity(scene, *spec.opacity);
   scene.views.try_emplace("default", overviewCamera(scene.bounds));
@@ -61,8 +64,34 @@ Scene loadScene(const SceneSpec& spec) {
   return scene;
 }
 
+namespace {
+
+// "path:NAME@T"
+Camera findOnPath(const Scene& scene, const std::string& view) {
+  const std::size_t at = view.rfind('@');
+  if (at == std::string::npos)
+    fail<InputError>("view '{}': expected 'path:NAME@T' with T from 0 to 1", view);
+  const std::string name = view.substr(5, at - 5);
+  const auto path = scene.paths.find(name);
+  if (path == scene.paths.end()) {
+    std::vector<std::string> names;
+    for (const auto& [known, ignored] : scene.paths) names.push_back(known);
+    fail<InputError>("view '{}': scene '{}' has no path '{}'{}; it has {}", view, scene.name, name,
+                     didYouMean(name, names), names.empty() ? "none" : joinNames(names));
+  }
+  float t = -1.0f;
+  const char* end = view.data() + view.size();
+  const auto [stop, error] = std::from_chars(view.data() + at + 1, end, t);
+  if (error != std::errc{} || stop != end || !(t >= 0.0f && t <= 1.0f))
+    fail<InputError>("view '{}': '{}' is not a number from 0 to 1", view, view.substr(at + 1));
+  return path->second.at(t);
+}
+
+}  // namespace
+
 Camera findView(const Scene& scene, const std::string& view) {
   if (const auto named = scene.views.find(view); named != scene.views.end()) return named->second;
+  if (view.starts_with("path:")) return findOnPath(scene, view);
   if (view.starts_with("orbit:") || view.starts_with("look:"))
     return parseCamera(view, scene.bounds);
   std::vector<std::string> names;

@@ -8,9 +8,35 @@
 namespace oitlab {
 
 /// Puts together the scenes that code makes. Triangles are counter-clockwise from outside.
+///
+/// A counting builder takes the same calls and keeps only how many vertices and triangles there
+/// were: so a generator can be asked for its size without the work, and fit itself to a budget.
+/// What a generator asks for must therefore not depend on what it made before.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(std::string name) { scene_.name = std::move(name); }
+  enum class Mode { build, count };
+
+  explicit MeshBuilder(std::string name, Mode mode = Mode::build) : counting_(mode == Mode::count) {
+    scene_.name = std::move(name);
+  }
+
+  bool counting() const { return counting_; }
+  const std::string& name() const { return scene_.name; }
+  std::uint64_t triangleCount() const { return counting_ ? triangles_ : scene_.triangles.size(); }
+  std::uint64_t vertexCount() const { return counting_ ? vertices_ : scene_.vertices.size(); }
+
+  /// To be added at once by what need not work out its vertices one by one when counting.
+  void count(std::uint64_t vertices, std::uint64_t triangles) {
+    vertices_ += vertices;
+    triangles_ += triangles;
+  }
+
+  /// Room for what is about to come: growing step by step would take twice the memory.
+  void reserve(std::uint64_t vertices, std::uint64_t triangles) {
+    if (counting_) return;
+    scene_.vertices.reserve(vertices);
+    scene_.triangles.reserve(triangles);
+  }
 
   std::uint32_t material(Material material) {
     scene_.materials.push_back(std::move(material));
@@ -23,22 +49,36 @@ class MeshBuilder {
         {.name = "blend", .baseColor = {1, 1, 1, opacity}, .alphaMode = AlphaMode::blend});
   }
 
+  /// A material that blends and whose opacity is the alpha of the texture that `paint()` returns.
+  template <typename Paint>
+  std::uint32_t texturedMaterial(Paint&& paint) {
+    const int index = int(scene_.textures.size());
+    scene_.textures.push_back(counting_ ? Texture{} : paint());
+    return material(
+        {.name = scene_.textures.back().name, .texture = index, .alphaMode = AlphaMode::blend});
+  }
+
   /// `normal` of unit length, `color` linear.
   std::uint32_t vertex(glm::vec3 position, glm::vec3 normal, glm::vec2 uv, glm::vec3 color,
                        std::uint32_t material) {
+    if (counting_) return std::uint32_t(vertices_++);
     scene_.vertices.push_back(
         {position, packNormal(normal), uv, packColor(glm::vec4(color, 1.0f)), material});
     return std::uint32_t(scene_.vertices.size() - 1);
   }
 
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    scene_.triangles.emplace_back(a, b, c);
+    if (counting_)
+      ++triangles_;
+    else
+      scene_.triangles.emplace_back(a, b, c);
   }
 
   /// A flat quad of four vertices and two triangles: `center` and the half edges `right` and `up`;
   /// it faces cross(right, up).
   void quad(glm::vec3 center, glm::vec3 right, glm::vec3 up, glm::vec3 color,
             std::uint32_t material) {
+    if (counting_) return count(4, 2);
     const glm::vec3 normal = glm::normalize(glm::cross(right, up));
     const std::uint32_t a = vertex(center - right - up, normal, {0, 1}, color, material);
     const std::uint32_t b = vertex(center + right - up, normal, {1, 1}, color, material);
@@ -53,6 +93,8 @@ class MeshBuilder {
   Scene take() { return std::move(scene_); }
 
  private:
+  bool counting_;
+  std::uint64_t vertices_ = 0, triangles_ = 0;
   Scene scene_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "common/scene_types.h"
 #include "scene/camera.h"
+#include "scene/camera_path.h"
 
 namespace oitlab {
 
@@ -57,7 +58,8 @@ struct Scene {
   std::vector<glm::uvec3> triangles;
   std::vector<Material> materials;  ///< never empty when there are triangles
   std::vector<Texture> textures;
-  std::map<std::string, Camera> views;  ///< at least "default"
+  std::map<std::string, Camera> views;      ///< at least "default"
+  std::map<std::string, CameraPath> paths;  ///< fly-throughs
   std::vector<Repair> repairs;
   Bounds bounds;  ///< of the vertices that triangles use
 
@@ -86,6 +88,17 @@ struct SceneInfo {
 /// The generated scenes, in the order in which they are listed.
 std::vector<SceneInfo> sceneCatalogue();
 
+/// How big a generated scene is.
+struct SceneSize {
+  std::uint64_t triangles = 0, vertices = 0;
+  std::size_t materials = 0, textures = 0;
+  std::vector<std::string> views, paths;
+};
+
+/// The size that loadScene() would find, counted without making the scene: quick even for millions
+/// of triangles. `detail` in (0, 1]. Throws InputError when no generated scene has that name.
+SceneSize generatedSize(const std::string& name, float detail = 1.0f);
+
 /// Loads or generates a scene, applies the opacity override, computes bounds, and fills in the
 /// views: "default" always exists. Throws InputError (file, place, what was found and wanted; an
 /// unknown name gets a suggestion).
@@ -96,8 +109,9 @@ Scene loadScene(const SceneSpec& spec);
 /// out stays cut out: its cutoff is scaled by the change of baseColor.a.
 void overrideOpacity(Scene& scene, float opacity);
 
-/// The camera for `view`: a named view of the scene, or what parseCamera() takes. Throws InputError
-/// with the scene's view names and a suggestion.
+/// The camera for `view`: a named view of the scene, "path:NAME@T" for the camera at T in [0, 1] of
+/// one of its paths, or what parseCamera() takes. Throws InputError with the names there are and a
+/// suggestion.
 Camera findView(const Scene& scene, const std::string& view);
 
 /// Octahedral packing of a unit normal as Vertex::normal wants it, and back.
