@@ -162,8 +162,9 @@ TEST(CpuReferenceDoubts, SurfacesThatCrossWithinThePixelGrid) {
   const Scene scene =
       triangleScene({layerAt(0), steep}, {{1, 0, 0, 0.5f}, {0, 1, 0, 0.5f}}, frontCamera());
   EXPECT_EQ(renderOnCpu(scene, frontCamera(), 64, 64).pixelsInDoubt(doubt::depthOrder), 0u);
-  Camera moved = frontCamera();  // by half a pixel: now the line meets the centres of a column
-  moved.eye.x = moved.target.x = 1.0f / 64;
+  Camera moved =
+      frontCamera();  // by half a pixel and a bit: the line passes centres at 1/400 pixel
+  moved.eye.x = moved.target.x = (0.5f + 1 / 400.0f) / 32;
   const CpuImage image = renderOnCpu(scene, moved, 64, 64);
   EXPECT_EQ(image.pixelsInDoubt(doubt::depthOrder), 64u);
   EXPECT_NE(image.doubts[image.index(31, 5)] & doubt::depthOrder, 0);
