@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 
 import numpy
 import pytest
-from conftest import ROOT
+from program import ROOT
 from oitlab_analysis.images import preview
 from oitlab_analysis.report import make_report
 from PIL import Image

@@ -1,27 +1,27 @@
-"""The program under test, as a user runs it: OITLAB_PROGRAM names it (CTest sets it)."""
+"""The program under test, as a user runs it."""
 
 import json
 import os
 import subprocess
 
 import pytest
+from program import PROGRAM
 
 
 @pytest.fixture(scope="session")
 def oitlab(tmp_path_factory):
     """Runs the program in an empty folder; returns the completed process."""
-    program = os.environ.get("OITLAB_PROGRAM")
-    if not program:
-        assert "CI" not in os.environ, "OITLAB_PROGRAM is not set"
-        pytest.skip("OITLAB_PROGRAM is not set")
+    if not PROGRAM.is_file():
+        assert "CI" not in os.environ, f"{PROGRAM} is not built"
+        pytest.skip(f"{PROGRAM} is not built")
     folder = tmp_path_factory.mktemp("work")
 
     def run(*arguments, env=None, cwd=None):
-        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
                               cwd=cwd or folder, env={**os.environ, **(env or {})}, timeout=300)
 
     run.folder = folder
-    run.program = program
+    run.program = PROGRAM
     return run
 
 
