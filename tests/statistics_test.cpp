@@ -145,7 +145,8 @@ TEST(Summarize, IntervalsCoverTheTruth) {
   EXPECT_LE(coveredByFrames, kTrials * 75 / 100);
 }
 
-StopRule ruleOf(double seconds, const std::vector<double>& medians, StopRule::Limits limits = {}) {
+StopRule ruleOf(double seconds, const std::vector<double>& medians,
+                StopRule::Limits limits = {.minBlocks = 5}) {
   StopRule rule(limits);
   for (const double median : medians) rule.addBlock(median, seconds);
   return rule;
@@ -172,7 +173,7 @@ TEST(StopRule, StopsWhenTheMedianStandsStill) {
   EXPECT_EQ(ruleOf(0, {10, 9, 11, 8, 12, 7, 13, 6}).stopReason(), "");
   // 10, 10.5, 10, 10, 10, 10, 10, 10: still over six values, that is over five blocks, after eight.
   const std::vector<double> noise = {10, 11, 9, 10, 8, 10, 12, 10};
-  StopRule::Limits limits;
+  StopRule::Limits limits{.minBlocks = 5};
   limits.relativeSpread = 0.01;
   for (std::size_t blocks = 0; blocks < noise.size(); ++blocks)
     EXPECT_EQ(
@@ -192,7 +193,7 @@ TEST(StopRule, SaysThatTheSpreadWasReachedEvenWhenTimeIsOutToo) {
 }
 
 TEST(StopRule, StopsAtTheMostBlocks) {
-  StopRule::Limits limits;
+  StopRule::Limits limits{.minBlocks = 5};
   limits.maxBlocks = 4;
   EXPECT_EQ(ruleOf(0, {10, 9, 11}, limits).stopReason(), "");
   EXPECT_EQ(ruleOf(0, {10, 9, 11, 8}, limits).stopReason(), "max_blocks");

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "experiment/describe.h"
 #include "scene/coverage.h"
+#include "scene/quads.h"
 #include "util/error.h"
 #include "util/size.h"
 
@@ -27,7 +28,7 @@ int describeScene(const SceneOptions& options) {
   const Camera camera = findView(scene, options.view);
   const auto [width, height] = *size;
   const Coverage coverage = measureCoverage(scene, camera, int(width), int(height));
-  const QuadCount quads = countQuads(scene);
+  const QuadMesh quads = cachedQuads(scene);
   const std::uint64_t triangles = scene.triangles.size();
   const double mean = double(coverage.samples) / (double(width) * double(height));
 
@@ -46,8 +47,8 @@ int describeScene(const SceneOptions& options) {
       {"views", views},
       {"paths", paths},
       {"repairs", repairs},
-      {"quads", quads.quads},
-      {"degenerate_percent", percent(quads.degenerate, quads.quads)},
+      {"quads", quads.quads.size()},
+      {"degenerate_percent", quads.degeneratePercent()},
       {"view", options.view},
       {"camera", describeCamera(camera)},
       {"size", {width, height}},
@@ -65,8 +66,8 @@ int describeScene(const SceneOptions& options) {
     fmt::print("repaired: {} {}\n", repair.count, repair.what);
   fmt::print("{}: {} triangles, {} vertices, {} materials, {} textures\n", scene.name, triangles,
              scene.vertices.size(), scene.materials.size(), scene.textures.size());
-  fmt::print("  {} quads, {:.1f}% of them a single triangle\n", quads.quads,
-             percent(quads.degenerate, quads.quads));
+  fmt::print("  {} quads, {:.1f}% of them a single triangle\n", quads.quads.size(),
+             quads.degeneratePercent());
   fmt::print("  view {} at {}x{}: {:.3f} M samples, depth {:.2f} mean, {} peak\n", options.view,
              width, height, double(coverage.samples) * 1e-6, mean, coverage.peakDepth);
   fmt::print("  {:.1f}% of the triangles visible, {:.1f}% with back-face culling\n",

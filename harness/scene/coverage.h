@@ -20,12 +20,4 @@ struct Coverage {
 /// vertices to its sub-pixel grid.
 Coverage measureCoverage(const Scene& scene, const Camera& camera, int width, int height);
 
-/// How many quads (pairs of triangles that share an edge by index) and single triangles are left
-/// when the triangles are paired greedily, those with the fewest partners first.
-struct QuadCount {
-  std::uint64_t quads = 0;       ///< pairs and singles together, as the LucidRaster paper counts
-  std::uint64_t degenerate = 0;  ///< singles
-};
-QuadCount countQuads(const Scene& scene);
-
 }  // namespace oitlab
