@@ -246,6 +246,19 @@ TEST(Quads, GeneratedScenesAreNearlyAllQuads) {
   }
 }
 
+// What `oitlab list scenes` says without making the scenes. The two largest take seconds:
+// `oitlab scene powerplant --json` and `sanmiguel` show theirs.
+TEST(Quads, ListedCountsAreTrue) {
+  for (const SceneInfo& info : sceneCatalogue()) {
+    const SceneSize size = generatedSize(info.name);
+    EXPECT_GT(size.quads, 0u) << info.name;
+    if (size.triangles > 1000000) continue;
+    const QuadMesh mesh = pairTriangles(loadScene({info.name, {}, 1.0f}));
+    EXPECT_EQ(size.quads, mesh.quads.size()) << info.name;
+    EXPECT_EQ(size.degenerateQuads, mesh.degenerate) << info.name;
+  }
+}
+
 // Published for LucidRaster: 1.5 % of Sponza's 132K quads and 0.9 % of the dragon's 438K.
 TEST(Quads, RealScenesAreAsPublished) {
   OITLAB_NEEDS_SHARED_SCENES();

@@ -32,14 +32,17 @@ int listScenes(bool asJson) {
   nlohmann::json list = nlohmann::json::array();
   for (const SceneInfo& info : sceneCatalogue()) {
     const SceneSize size = generatedSize(info.name);
-    list.push_back({{"name", info.name},
-                    {"summary", info.summary},
-                    {"triangles", size.triangles},
-                    {"vertices", size.vertices},
-                    {"materials", size.materials},
-                    {"textures", size.textures},
-                    {"views", size.views},
-                    {"paths", size.paths}});
+    list.push_back(
+        {{"name", info.name},
+         {"summary", info.summary},
+         {"triangles", size.triangles},
+         {"quads", size.quads},
+         {"degenerate_percent", 100.0 * double(size.degenerateQuads) / double(size.quads)},
+         {"vertices", size.vertices},
+         {"materials", size.materials},
+         {"textures", size.textures},
+         {"views", size.views},
+         {"paths", size.paths}});
     if (!asJson)
       fmt::print("{:<12} {:>9} triangles   {}\n", info.name, size.triangles, info.summary);
   }

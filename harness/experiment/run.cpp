@@ -57,8 +57,8 @@ class Run {
   const Experiment& experiment_;
   fs::path results_;
   Progress& progress_;
-  const std::string runId_ = fmt::format(
-      "{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
+  const std::string runId_ =
+      fmt::format("{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
 };
 
 json Run::header(const CellSpec& cell) const {

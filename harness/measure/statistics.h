@@ -33,9 +33,9 @@ class StopRule {
   struct Limits {
     double relativeSpread = 0.005;  ///< "spread": below it the cell is done
     int minBlocks = 10;  ///< never judged on fewer: a bootstrap over blocks wants some to draw from
-    int settleWindow = 5;           ///< "settled": blocks over which the median stood still
-    double timeLimitSeconds = 10;   ///< "time_limit": wall-clock time spent on this cell
-    int maxBlocks = 200;            ///< "max_blocks"
+    int settleWindow = 5;          ///< "settled": blocks over which the median stood still
+    double timeLimitSeconds = 10;  ///< "time_limit": wall-clock time spent on this cell
+    int maxBlocks = 200;           ///< "max_blocks"
   };
   explicit StopRule(Limits limits) : limits_(limits) {}
 

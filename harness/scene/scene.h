@@ -91,6 +91,7 @@ std::vector<SceneInfo> sceneCatalogue();
 /// How big a generated scene is.
 struct SceneSize {
   std::uint64_t triangles = 0, vertices = 0;
+  std::uint64_t quads = 0, degenerateQuads = 0;  ///< of scene/quads.h; 0 unless `detail` is 1
   std::size_t materials = 0, textures = 0;
   std::vector<std::string> views, paths;
 };
