@@ -40,9 +40,10 @@ Verdict judge(const Image& image, const CpuImage& truth, double tolerance) {
 // Of a pixel in no doubt. Measured on llvmpipe: 0.001/255 where there is no texture.
 constexpr double tolerance = 2.0 / 255;
 
-// Where textures are sampled, the filter is the device's: llvmpipe truncates the colours between the
-// end points of BC blocks, a step of 8-bit sRGB (2.2/255 linear near white; measured: 2.2/255), and
-// GPUs weigh texels in steps of 1/256. Vulkan allows both. The level of detail is ours (shade.glsl).
+// Where textures are sampled, the filter is the device's: llvmpipe truncates the colours between
+// the end points of BC blocks, a step of 8-bit sRGB (2.2/255 linear near white; measured: 2.2/255),
+// and GPUs weigh texels in steps of 1/256. Vulkan allows both. The level of detail is ours
+// (shade.glsl).
 constexpr double textureTolerance = 4.0 / 255;
 
 class CpuReferenceAgainstDevice : public GpuTest {

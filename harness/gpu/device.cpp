@@ -196,6 +196,7 @@ Device::Device(const Options& options)
       vk::DescriptorSetLayoutBinding(1, Type::eCombinedImageSampler, 1, all),  // transparent atlas
       vk::DescriptorSetLayoutBinding(2, Type::eStorageImage, 1, all),          // colour target
       vk::DescriptorSetLayoutBinding(3, Type::eCombinedImageSampler, 1, all),  // opaque depth
+      vk::DescriptorSetLayoutBinding(4, Type::eCombinedImageSampler, methodImageCount, all),
   };
   setLayout_ =
       vk::raii::DescriptorSetLayout(device_, vk::DescriptorSetLayoutCreateInfo({}, bindings));

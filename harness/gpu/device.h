@@ -100,6 +100,9 @@ class Device {
   /// Records, submits and waits: for set-up work, never inside a measurement.
   void runOnce(const std::function<void(const Commands&)>& record) const;
 
+  /// Images of its own that a method can sample through the common layout.
+  static constexpr std::uint32_t methodImageCount = 4;
+
   /// Push constants: 128 bytes, what Vulkan guarantees.
   static constexpr std::uint32_t pushConstantBytes = 128;
 

@@ -11,28 +11,28 @@ vk::raii::ShaderModule makeModule(const Device& device, const std::string& path,
   return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
 }
 
-vk::PipelineColorBlendAttachmentState blendState(vk::BlendFactor source,
-                                                 vk::BlendFactor destination) {
-  using Component = vk::ColorComponentFlagBits;
-  const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
-  return {VK_TRUE,
-          source,
-          destination,
-          vk::BlendOp::eAdd,
-          vk::BlendFactor::eOne,
-          vk::BlendFactor::eOneMinusSrcAlpha,
-          vk::BlendOp::eAdd,
-          all};
-}
-
 }  // namespace
 
+vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
+                                               vk::BlendFactor destinationFactor) {
+  using Component = vk::ColorComponentFlagBits;
+  const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
+  return {VK_TRUE,      sourceFactor,      destinationFactor, vk::BlendOp::eAdd,
+          sourceFactor, destinationFactor, vk::BlendOp::eAdd, all};
+}
+
+vk::PipelineColorBlendAttachmentState additive() {
+  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOne);
+}
+
 vk::PipelineColorBlendAttachmentState premultipliedOver() {
-  return blendState(vk::BlendFactor::eOne, vk::BlendFactor::eOneMinusSrcAlpha);
+  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOneMinusSrcAlpha);
 }
 
 vk::PipelineColorBlendAttachmentState straightOver() {
-  return blendState(vk::BlendFactor::eSrcAlpha, vk::BlendFactor::eOneMinusSrcAlpha);
+  auto state = blending(vk::BlendFactor::eSrcAlpha, vk::BlendFactor::eOneMinusSrcAlpha);
+  state.srcAlphaBlendFactor = vk::BlendFactor::eOne;
+  return state;
 }
 
 Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
@@ -68,8 +68,8 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   raster.lineWidth = 1.0f;
   const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
   const bool depth = description.depthFormat != vk::Format::eUndefined;
-  const vk::PipelineDepthStencilStateCreateInfo depthStencil({}, depth, description.depthWrite,
-                                                             description.depthCompare);
+  const vk::PipelineDepthStencilStateCreateInfo depthStencil(
+      {}, depth && description.depthTest, description.depthWrite, description.depthCompare);
   auto blends = description.blends;
   using Component = vk::ColorComponentFlagBits;
   while (blends.size() < description.colorFormats.size())

@@ -28,6 +28,7 @@ class Pipeline {
     Defines defines;  ///< for both shaders
     std::vector<vk::Format> colorFormats;
     vk::Format depthFormat = vk::Format::eUndefined;
+    bool depthTest = true;  ///< where there is a depth format
     bool depthWrite = false;
     /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
     vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
@@ -50,6 +51,13 @@ class Pipeline {
   vk::PipelineLayout layout_;
   vk::raii::Pipeline pipeline_ = nullptr;
 };
+
+/// source * `sourceFactor` + destination * `destinationFactor`, for colour and alpha alike.
+vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
+                                               vk::BlendFactor destinationFactor);
+
+/// source + destination.
+vk::PipelineColorBlendAttachmentState additive();
 
 /// Front-to-back result over what is there: source + destination * (1 - source alpha).
 vk::PipelineColorBlendAttachmentState premultipliedOver();

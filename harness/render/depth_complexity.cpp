@@ -25,7 +25,7 @@ class FragmentCounter : public Method {
     using Stage = vk::PipelineStageFlagBits2;
     fillBuffer(frame.commands, counts_, 0);
     frame.barrier(Stage::eTransfer, Stage::eFragmentShader);
-    frame.renderDepthTested([&] {
+    frame.renderDepthTested({}, [&] {
       pipeline_.bind(frame.commands, frame.bindings);
       pipeline_.push(frame.commands, CountPush{frame.constants, counts_.address()});
       frame.drawTransparent();

@@ -80,17 +80,30 @@ void Frame::barrier(vk::PipelineStageFlags2 from, vk::PipelineStageFlags2 to) co
   commands.pipelineBarrier2(dependency);
 }
 
-void Frame::beginRendering(bool color) const {
-  vk::RenderingAttachmentInfo colorInfo(target.color().view(), vk::ImageLayout::eGeneral);
-  colorInfo.loadOp = vk::AttachmentLoadOp::eLoad;
-  colorInfo.storeOp = vk::AttachmentStoreOp::eStore;
-  vk::RenderingAttachmentInfo depthInfo(target.depth().view(),
-                                        vk::ImageLayout::eDepthStencilReadOnlyOptimal);
-  depthInfo.loadOp = vk::AttachmentLoadOp::eLoad;
-  depthInfo.storeOp = vk::AttachmentStoreOp::eNone;
+vk::RenderingAttachmentInfo Frame::targetAttachment() const {
+  vk::RenderingAttachmentInfo info(target.color().view(), vk::ImageLayout::eGeneral);
+  info.loadOp = vk::AttachmentLoadOp::eLoad;
+  info.storeOp = vk::AttachmentStoreOp::eStore;
+  return info;
+}
+
+vk::RenderingAttachmentInfo clearedAttachment(const GpuImage& image, std::array<float, 4> value) {
+  vk::RenderingAttachmentInfo info(image.view(), vk::ImageLayout::eColorAttachmentOptimal);
+  info.loadOp = vk::AttachmentLoadOp::eClear;
+  info.storeOp = vk::AttachmentStoreOp::eStore;
+  info.clearValue.color = vk::ClearColorValue(value);
+  return info;
+}
+
+void Frame::beginRendering(std::span<const vk::RenderingAttachmentInfo> colors) const {
+  vk::RenderingAttachmentInfo depth(target.depth().view(),
+                                    vk::ImageLayout::eDepthStencilReadOnlyOptimal);
+  depth.loadOp = vk::AttachmentLoadOp::eLoad;
+  depth.storeOp = vk::AttachmentStoreOp::eNone;
   vk::RenderingInfo info({}, target.area(), 1);
-  if (color) info.setColorAttachments(colorInfo);
-  info.setPDepthAttachment(&depthInfo);
+  info.colorAttachmentCount = std::uint32_t(colors.size());
+  info.pColorAttachments = colors.data();
+  info.setPDepthAttachment(&depth);
   commands.beginRendering(info);
   commands.setViewport(0, vk::Viewport(0, 0, float(target.width()), float(target.height()), 0, 1));
   commands.setScissor(0, target.area());

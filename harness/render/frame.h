@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,15 +76,14 @@ struct Frame {
   /// A render pass on the target's colour (loaded), tested against the opaque depth (read-only).
   template <typename Draw>
   void renderOnTarget(Draw&& draw) const {
-    beginRendering(true);
-    draw();
-    commands.endRendering();
+    renderDepthTested(std::array{targetAttachment()}, std::forward<Draw>(draw));
   }
 
-  /// A render pass without colour, tested against the opaque depth: for captures.
+  /// A render pass on attachments of the method's own, or on none (for captures), tested against
+  /// the opaque depth.
   template <typename Draw>
-  void renderDepthTested(Draw&& draw) const {
-    beginRendering(false);
+  void renderDepthTested(std::span<const vk::RenderingAttachmentInfo> colors, Draw&& draw) const {
+    beginRendering(colors);
     draw();
     commands.endRendering();
   }
@@ -94,7 +95,11 @@ struct Frame {
   void dispatchPixels() const;
 
  private:
-  void beginRendering(bool color) const;
+  vk::RenderingAttachmentInfo targetAttachment() const;
+  void beginRendering(std::span<const vk::RenderingAttachmentInfo> colors) const;
 };
+
+/// A method's own image as an attachment that begins with `value`; in colorAttachmentOptimal.
+vk::RenderingAttachmentInfo clearedAttachment(const GpuImage& image, std::array<float, 4> value);
 
 }  // namespace oitlab

@@ -48,10 +48,12 @@ class Target {
 };
 
 /// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive
-/// it.
+/// it. A method that samples images of its own (at most Device::methodImageCount, by then in
+/// shaderReadOnlyOptimal) makes a set with them.
 class FrameBindings {
  public:
-  FrameBindings(const Device& device, const GpuScene& scene, const Target& target);
+  FrameBindings(const Device& device, const GpuScene& scene, const Target& target,
+                std::span<const GpuImage* const> methodImages = {});
   vk::DescriptorSet set() const { return *set_; }
 
  private:

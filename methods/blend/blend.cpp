@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "method/method.h"
+#include "render/sample_counter.h"
 
 namespace oitlab::blend {
 
@@ -21,8 +22,7 @@ class Blend : public Method {
       indices_ =
           Buffer(device, memory_, "sorted indices",
                  std::max<std::uint64_t>(12ull * scene.transparentCount(), 16), BufferKind::upload);
-    if (device.info().has("occlusionQueryPrecise"))
-      samples_ = vk::raii::QueryPool(device.vk(), {{}, vk::QueryType::eOcclusion, 1});
+    samples_.emplace(device);
   }
 
   void record(const Frame& frame) override {
@@ -31,33 +31,24 @@ class Blend : public Method {
       sortBackToFront(frame.scene, frame.camera.eye);
       sortedFor_ = frame.camera.eye;
     }
-    counted_ = frame.instrumented && *samples_;
-    if (counted_) frame.commands.resetQueryPool(*samples_, 0, 1);
+    samples_->reset(frame);
     frame.stage("blend", [&] {
       frame.renderOnTarget([&] {
-        if (counted_) frame.commands.beginQuery(*samples_, 0, vk::QueryControlFlagBits::ePrecise);
-        pipeline_.bind(frame.commands, frame.bindings);
-        pipeline_.push(frame.commands, frame.constants);
-        if (sorted_) {
-          frame.commands.bindIndexBuffer(indices_.vk(), 0, vk::IndexType::eUint32);
-          frame.commands.drawIndexed(frame.scene.transparentCount() * 3, 1, 0, 0, 0);
-        } else {
-          frame.drawTransparent();
-        }
-        if (counted_) frame.commands.endQuery(*samples_, 0);
+        samples_->count(frame, [&] {
+          pipeline_.bind(frame.commands, frame.bindings);
+          pipeline_.push(frame.commands, frame.constants);
+          if (sorted_) {
+            frame.commands.bindIndexBuffer(indices_.vk(), 0, vk::IndexType::eUint32);
+            frame.commands.drawIndexed(frame.scene.transparentCount() * 3, 1, 0, 0, 0);
+          } else {
+            frame.drawTransparent();
+          }
+        });
       });
     });
   }
 
-  Status status() override {
-    if (counted_) {
-      const auto [result, samples] = samples_.getResult<std::uint64_t>(
-          0, 1, sizeof(std::uint64_t),
-          vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-      if (result == vk::Result::eSuccess) counters_["fragments"] = samples;
-    }
-    return {.counters = counters_};
-  }
+  Status status() override { return {.counters = samples_->counters()}; }
 
  private:
   void sortBackToFront(const GpuScene& gpuScene, glm::vec3 eye) {
@@ -87,12 +78,10 @@ class Blend : public Method {
   }
 
   bool sorted_ = false;
-  bool counted_ = false;
   Pipeline pipeline_;
   Buffer indices_;
   std::optional<glm::vec3> sortedFor_;
-  vk::raii::QueryPool samples_ = nullptr;
-  std::map<std::string, std::uint64_t> counters_;
+  std::optional<SampleCounter> samples_;
 };
 
 const RegisterMethod registered({

@@ -41,7 +41,7 @@ class Reference : public Method {
       frame.barrier(Stage::eTransfer, Stage::eFragmentShader);
     });
     frame.stage("capture", [&] {
-      frame.renderDepthTested([&] {
+      frame.renderDepthTested({}, [&] {
         capture_.bind(frame.commands, frame.bindings);
         capture_.push(frame.commands, push);
         frame.drawTransparent();

@@ -9,5 +9,6 @@ layout(set = 0, binding = 1) uniform sampler2D transparentAtlas;
 layout(set = 0, binding = 2, TARGET_FORMAT) uniform image2D target;
 #endif
 layout(set = 0, binding = 3) uniform sampler2D opaqueDepth;
+layout(set = 0, binding = 4) uniform sampler2D methodImages[4];  // a method's own, unfiltered
 
 #endif
