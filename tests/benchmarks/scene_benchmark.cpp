@@ -1,6 +1,7 @@
 // What a scene costs before the first frame, on one core unless it says otherwise. Throughput must
 // not fall with size: all of it is meant to be linear.
 #include <benchmark/benchmark.h>
+#include <cstdlib>
 
 #include "scene/atlas.h"
 #include "scene/quads.h"
@@ -55,6 +56,14 @@ void load(benchmark::State& state, const char* name) {
   state.SetItemsProcessed(state.iterations() * std::int64_t(triangles));
   state.SetLabel("triangles");
 }
+/// A file of the user's: OITLAB_SCENE=path.glb.
+void loadFile(benchmark::State& state) {
+  const char* path = std::getenv("OITLAB_SCENE");
+  if (path == nullptr) return state.SkipWithError("OITLAB_SCENE names no file");
+  load(state, path);
+}
+
+BENCHMARK(loadFile)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(load, boxes, "boxes")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(load, teapot, "teapot")->Unit(benchmark::kMillisecond);
 
