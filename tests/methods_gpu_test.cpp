@@ -87,20 +87,25 @@ TEST_F(Methods, ReferenceGrowsItsPoolAndLosesNothing) {
   EXPECT_EQ(tight.frame.counters, roomy.frame.counters);
 }
 
-// No limit on the fragments of a pixel: 3,000 layers over the whole target.
+// No limit on the fragments of a pixel: 3,000 layers over the left half, which take more than one
+// round of the sort, beside pixels of a single layer, which are done in the first.
 TEST_F(Methods, ReferenceSortsThousandsOfLayers) {
   std::vector<std::array<glm::vec3, 3>> layers;
   std::vector<glm::vec4> colors;
-  for (int i = 0; i < 3000; ++i) {
-    const float z = -0.001f * float((i * 7919) % 3000);  // a permutation: 7919 is prime
-    layers.push_back({glm::vec3{-99, -99, z}, {99, -99, z}, {0, 99, z}});
+  for (int i = 0; i < 2999; ++i) {
+    const float z = -0.001f * float((i * 7919) % 2999);  // a permutation: 7919 is prime
+    layers.push_back({glm::vec3{0, -99, z}, {0, 99, z}, {-99, 0, z}});
     colors.emplace_back(float(i % 7) / 6, float(i % 11) / 10, float(i % 13) / 12, 0.01f);
   }
+  layers.push_back({glm::vec3{-99, -99, -4}, {99, -99, -4}, {0, 99, -4}});
+  colors.emplace_back(0.2f, 0.9f, 0.4f, 0.5f);
   const Scene scene = triangleScene(layers, colors, frontCamera());
   RenderFixture fixture(scene, 8, 8);
   const auto exact = fixture.render("reference");
-  EXPECT_EQ(exact.frame.counters.at("fragments"), 3000u * 64);
+  EXPECT_GT(exact.frame.recordings, 1);
+  EXPECT_EQ(exact.frame.counters.at("fragments"), 2999u * 32 + 64);
   EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 3000u);
+  EXPECT_EQ(exact.frame.counters.at("covered_pixels"), 64u);
   const auto sorted = fixture.render("blend", {{"order", "sorted"}});
   // Back to front in float32 rounds 3,000 times in another order.
   EXPECT_LT(compareImages(sorted.image, exact.image).maxError, 1e-3);
