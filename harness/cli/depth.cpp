@@ -127,7 +127,7 @@ void addDepth(CLI::App& program, Action& action) {
   auto options = std::make_shared<DepthOptions>();
   CLI::App* verb = program.add_subcommand(
       "depth", "Depth complexity: how many transparent fragments each pixel has");
-  verb->add_option("--scene", options->scene,
+  verb->add_option("scene,--scene", options->scene,
                    "A name of `oitlab list scenes`, or a .glb/.gltf file")
       ->required();
   verb->add_option("--size", options->size, "Width x height in pixels")
