@@ -87,7 +87,6 @@ class Device {
   /// bindings.glsl), and push constants carry buffer addresses.
   vk::PipelineLayout pipelineLayout() const { return *pipelineLayout_; }
   vk::DescriptorSetLayout setLayout() const { return *setLayout_; }
-  vk::PipelineCache pipelineCache() const { return *pipelineCache_; }
 
   Commands makeCommandBuffer() const;
 
@@ -123,7 +122,6 @@ class Device {
   vk::raii::CommandPool commandPool_ = nullptr;
   vk::raii::DescriptorSetLayout setLayout_ = nullptr;
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
-  vk::raii::PipelineCache pipelineCache_ = nullptr;
   std::unique_ptr<ShaderLibrary> shaders_;
 };
 

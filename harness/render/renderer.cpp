@@ -68,13 +68,9 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
   const float aspect = float(target_.width()) / float(target_.height());
   FrameConstants constants{};
   constants.viewProjection = camera.projectionMatrix(aspect) * camera.viewMatrix();
-  constants.eye = glm::vec4(camera.eye, 1.0f);
-  constants.background = backgroundColor;
   constants.size = {target_.width(), target_.height()};
-  constants.transparentCount = scene_.transparentCount();
   constants.vertices = scene_.vertices().address();
   constants.materials = scene_.materials().address();
-  constants.transparentIndices = scene_.transparentIndices().address();
   constants.transparentIds = scene_.transparentIds().address();
   constants_.mapped<FrameConstants>()[0] = constants;
 

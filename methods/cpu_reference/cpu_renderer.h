@@ -20,7 +20,7 @@ inline constexpr std::uint8_t edge = 1;
 /// Two surfaces are so close in depth that float32 may order them the other way, and it would show
 /// (by 1/255). Copies of one triangle raise none: they are ordered by primitive id.
 inline constexpr std::uint8_t depthOrder = 2;
-/// A fragment's alpha is within 0.05 of its material's cutoff: devices filter textures less
+/// A fragment's alpha is within 0.02 of its material's cutoff: devices filter textures less
 /// exactly.
 inline constexpr std::uint8_t cutoff = 4;
 }  // namespace doubt

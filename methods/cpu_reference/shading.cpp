@@ -10,9 +10,10 @@ namespace {
 const glm::dvec3 kToLight(0.3999, 0.8142, 0.4206);
 constexpr double kAmbient = 0.2;
 
-// Alpha as a device filters it. llvmpipe mixes mip levels up to 0.043 levels too fine, and alpha
-// may differ by 1 between two levels; rounded texels and weights of 8 bits add a little.
-constexpr double kCutoffDoubt = 0.05;
+// Alpha as a device filters it: BC3 interpolates it in steps of 1/255, and texels are weighed in
+// steps of 1/256 in each direction and between levels; together up to 4/256, and a little for the
+// shader's log2.
+constexpr double kCutoffDoubt = 0.02;
 
 glm::dvec4 unpackColor(std::uint32_t packed) {
   glm::dvec4 color;

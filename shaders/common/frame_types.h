@@ -18,15 +18,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Uin
 
 struct FrameConstants {
   mat4 viewProjection;  // world to clip: y down, reversed infinite depth (near / distance)
-  vec4 eye;             // world space; w unused
-  vec4 background;      // linear, behind everything
   uvec2 size;           // pixels
-  uint transparentCount;  // triangles
-  uint unused;
   ADDRESS_OF(VertexBuffer) vertices;
   ADDRESS_OF(MaterialBuffer) materials;
-  ADDRESS_OF(UintBuffer) transparentIndices;  // three vertices a triangle, in submission order
-  ADDRESS_OF(UintBuffer) transparentIds;      // primitive id of the n-th submitted triangle
+  ADDRESS_OF(UintBuffer) transparentIds;  // primitive id of the n-th submitted triangle
 };
 
 #ifdef __cplusplus

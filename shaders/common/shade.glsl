@@ -20,8 +20,8 @@ const vec3 toLight = vec3(0.3999, 0.8142, 0.4206);  // unit length
 const float ambient = 0.2;
 
 // The level of detail as Vulkan defines it for isotropic filtering. Worked out here, because what
-// devices make of gradients differs: Vulkan lets them approximate, llvmpipe's levels are up to 0.043
-// too fine, and a tree of a hundred layers shows it.
+// devices make of gradients differs: Vulkan lets them approximate, and deep
+// foliage shows it.
 float levelOfDetail(vec2 dx, vec2 dy, vec2 atlasSize) {
   const vec2 texelsX = dx * atlasSize, texelsY = dy * atlasSize;
   return 0.5 * log2(max(max(dot(texelsX, texelsX), dot(texelsY, texelsY)), 1e-12));
