@@ -228,6 +228,16 @@ std::uint32_t Device::memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags
   fail<DeviceError>("{} has no memory of the kind {}", info_.name, to_string(wanted));
 }
 
+vk::Format Device::supportedFormat(std::initializer_list<vk::Format> formats,
+                                   vk::FormatFeatureFlags uses) const {
+  for (const vk::Format format : formats)
+    if ((physical_.getFormatProperties(format).optimalTilingFeatures & uses) == uses) return format;
+  std::vector<std::string> names;
+  for (const vk::Format format : formats) names.push_back(to_string(format));
+  fail<DeviceError>("{} has none of the formats {} for {}", info_.name, joined(names),
+                    to_string(uses));
+}
+
 Commands Device::makeCommandBuffer() const {
   const vk::CommandBufferAllocateInfo info(*commandPool_, vk::CommandBufferLevel::ePrimary, 1);
   return std::move(vk::raii::CommandBuffers(device_, info).front());

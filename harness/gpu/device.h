@@ -83,6 +83,11 @@ class Device {
   std::uint32_t memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,
                            vk::MemoryPropertyFlags preferred = {}) const;
 
+  /// The first of `formats` that optimally tiled images of `uses` can have. Throws DeviceError when
+  /// there is none.
+  vk::Format supportedFormat(std::initializer_list<vk::Format> formats,
+                             vk::FormatFeatureFlags uses) const;
+
   /// The one layout that all pipelines share: set 0 holds the few images (see shaders/common/
   /// bindings.glsl), and push constants carry buffer addresses.
   vk::PipelineLayout pipelineLayout() const { return *pipelineLayout_; }

@@ -68,8 +68,10 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   raster.lineWidth = 1.0f;
   const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
   const bool depth = description.depthFormat != vk::Format::eUndefined;
+  const bool stencil = description.stencilFormat != vk::Format::eUndefined;
   const vk::PipelineDepthStencilStateCreateInfo depthStencil(
-      {}, depth && description.depthTest, description.depthWrite, description.depthCompare);
+      {}, depth && description.depthTest, description.depthWrite, description.depthCompare, false,
+      stencil, description.stencil, description.stencil);
   auto blends = description.blends;
   using Component = vk::ColorComponentFlagBits;
   while (blends.size() < description.colorFormats.size())
@@ -77,11 +79,13 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
         Component::eR | Component::eG | Component::eB | Component::eA;
   vk::PipelineColorBlendStateCreateInfo blend;
   blend.setAttachments(blends);
-  const std::array dynamics = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  std::vector dynamics = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  if (stencil) dynamics.push_back(vk::DynamicState::eStencilReference);
   const vk::PipelineDynamicStateCreateInfo dynamic({}, dynamics);
   vk::PipelineRenderingCreateInfo rendering;
   rendering.setColorAttachmentFormats(description.colorFormats);
   rendering.setDepthAttachmentFormat(description.depthFormat);
+  rendering.setStencilAttachmentFormat(description.stencilFormat);
   vk::GraphicsPipelineCreateInfo info({}, stages, &vertexInput, &assembly, nullptr, &viewport,
                                       &raster, &multisample, &depthStencil, &blend, &dynamic,
                                       device.pipelineLayout());

@@ -32,6 +32,10 @@ class Pipeline {
     bool depthWrite = false;
     /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
     vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
+    /// Of a pass that has a stencil (Frame::renderOnDepthStencil): the test and what it writes, for
+    /// both faces. The reference value is set by setStencilReference() after bind().
+    vk::Format stencilFormat = vk::Format::eUndefined;
+    vk::StencilOpState stencil = {};
     std::vector<vk::PipelineColorBlendAttachmentState>
         blends;  ///< one per colour format; default: no blending
   };

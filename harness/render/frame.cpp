@@ -104,6 +104,23 @@ void Frame::beginRendering(std::span<const vk::RenderingAttachmentInfo> colors) 
   info.colorAttachmentCount = std::uint32_t(colors.size());
   info.pColorAttachments = colors.data();
   info.setPDepthAttachment(&depth);
+  begin(info);
+}
+
+void Frame::beginDepthStencil(const GpuImage& image, vk::AttachmentLoadOp load) const {
+  vk::RenderingAttachmentInfo attachment(image.view(),
+                                         vk::ImageLayout::eDepthStencilAttachmentOptimal);
+  attachment.loadOp = load;
+  attachment.storeOp = vk::AttachmentStoreOp::eStore;
+  attachment.clearValue.depthStencil = vk::ClearDepthStencilValue(0.0f, 0);
+  vk::RenderingInfo info({}, target.area(), 1);
+  const vk::ImageAspectFlags aspects = image.description().aspect;
+  if (aspects & vk::ImageAspectFlagBits::eDepth) info.setPDepthAttachment(&attachment);
+  if (aspects & vk::ImageAspectFlagBits::eStencil) info.setPStencilAttachment(&attachment);
+  begin(info);
+}
+
+void Frame::begin(const vk::RenderingInfo& info) const {
   commands.beginRendering(info);
   commands.setViewport(0, vk::Viewport(0, 0, float(target.width()), float(target.height()), 0, 1));
   commands.setScissor(0, target.area());

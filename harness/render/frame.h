@@ -88,6 +88,19 @@ struct Frame {
     commands.endRendering();
   }
 
+  /// A render pass without colours on a depth-stencil image of the method's own, which has one or
+  /// both of the aspects and is in depthStencilAttachmentOptimal. `load` eClear begins with 0 in
+  /// both: infinitely far, nothing counted.
+  template <typename Draw>
+  void renderOnDepthStencil(const GpuImage& image, vk::AttachmentLoadOp load, Draw&& draw) const {
+    beginDepthStencil(image, load);
+    draw();
+    commands.endRendering();
+  }
+
+  /// One triangle over the whole target, for pipelines with common/fullscreen.vert.
+  void drawFullscreen() const { commands.draw(3, 1, 0, 0); }
+
   /// Draws all transparent triangles in submission order with the bound pipeline.
   void drawTransparent() const;
 
@@ -97,6 +110,8 @@ struct Frame {
  private:
   vk::RenderingAttachmentInfo targetAttachment() const;
   void beginRendering(std::span<const vk::RenderingAttachmentInfo> colors) const;
+  void beginDepthStencil(const GpuImage& image, vk::AttachmentLoadOp load) const;
+  void begin(const vk::RenderingInfo& info) const;
 };
 
 /// A method's own image as an attachment that begins with `value`; in colorAttachmentOptimal.

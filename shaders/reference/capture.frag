@@ -16,10 +16,6 @@ void main() {
   if (index >= push.capacity) return;  // counted all the same: the host grows the pool
   const uvec2 pixel = uvec2(gl_FragCoord.xy);
   const uint head = pixel.y * push.frame.c.size.x + pixel.x;
-  Node node;
-  node.color = color;
-  node.depth = gl_FragCoord.z;
-  node.id = push.frame.c.transparentIds.at[gl_PrimitiveID];
-  node.next = atomicExchange(push.heads.at[head], index);
-  push.nodes.at[index] = node;
+  linkFragment(push.nodes, push.heads, head, index, color, gl_FragCoord.z,
+               push.frame.c.transparentIds.at[gl_PrimitiveID]);
 }

@@ -1,23 +1,13 @@
-// Per-pixel linked lists of every fragment (Yang et al. 2010; Knowles et al. 2013, section 2).
+// The lists of the reference: the pool of nodes, and what is counted.
 // C++ and GLSL both include this.
 #ifndef OITLAB_REFERENCE_LISTS_H
 #define OITLAB_REFERENCE_LISTS_H
 
-#include "common/frame_types.h"
+#include "common/lists.h"
 
 #ifdef __cplusplus
 namespace oitlab::reference {
 #endif
-
-#define LIST_END 0xffffffffu
-
-// 28 bytes a fragment: full float colour, since this is what others are judged by.
-struct Node {
-  vec4 color;  // straight, linear
-  float depth;
-  uint id;    // primitive id
-  uint next;  // index of a node, or LIST_END
-};
 
 struct ListCounters {
   uint fragments;    // captured, or that would have been: more than the pool holds means overflow
@@ -28,8 +18,6 @@ struct ListCounters {
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer NodeBuffer { Node at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HeadBuffer { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer CounterBuffer { ListCounters c; };
 #endif
 

@@ -1,0 +1,219 @@
+// The A-buffer of Knowles, Leach and Zambetta 2013, "Backwards Memory Allocation and Improved OIT":
+// every fragment in per-pixel linked lists, sorted in local memory. With backwards memory
+// allocation (BMA) pixels are grouped by their number of fragments in intervals of powers of two,
+// and each interval has a shader with as much local memory as it needs.
+//
+//   options      what the parameters mean: intervals, and the variant of the sort for each
+//   list_memory  the buffers
+//   sort_passes  masks and sorts
+//
+// Pixels beyond max_fragments (and, where the stencil counts, beyond what it can) are sorted in
+// their lists, so that the image is exact whatever the parameters, but for those that say
+// otherwise.
+#include "abuffer/options.h"
+#include "abuffer/sort_passes.h"
+#include "method/method.h"
+#include "util/error.h"
+
+namespace oitlab::abuffer {
+namespace {
+
+using Stage = vk::PipelineStageFlagBits2;
+
+class Abuffer : public Method {
+ public:
+  void prepare(const Device& device, const GpuScene&, const Target& target,
+               const Parameters& parameters) override {
+    device_ = &device;
+    options_.emplace(parameters, device.info(), formatName(target.format()));
+    lists_ =
+        ListMemory(device, memory_, *options_, std::uint64_t(target.width()) * target.height());
+    makeStencil(device, target);
+    makeCapture(device);
+    sorts_ = SortPasses(device, *options_, stencil_.extent().width > 0 ? &stencil_ : nullptr);
+    if (!options_->truncate)
+      deep_ = Pipeline::compute(device, "abuffer/deep.comp", options_->nodes);
+    if (options_->byInterval())
+      composite_ = Pipeline::compute(device, "abuffer/composite.comp", options_->nodes);
+    tally_ = Pipeline::compute(device, "abuffer/tally.comp", options_->nodes);
+  }
+
+  void record(const Frame& frame) override {
+    counted_ = frame.instrumented;
+    frame.stage("clear", [&] {
+      lists_.clear(frame);
+      frame.barrier(Stage::eTransfer, Stage::eFragmentShader | Stage::eComputeShader);
+    });
+    Push push = lists_.push(frame);
+    capture(frame, push);
+    sorts_.record(frame, lists_, push);
+    const auto shaders = Stage::eFragmentShader | Stage::eComputeShader;
+    frame.barrier(shaders, shaders | Stage::eDrawIndirect);
+    if (rounds_ > 0) frame.stage("deep", [&] { sortDeep(frame, push); });
+    if (options_->byInterval()) frame.stage("composite", [&] { pixels(frame, composite_, push); });
+    if (frame.instrumented) frame.stage("tally", [&] { pixels(frame, tally_, push); });
+    frame.barrier(shaders, Stage::eTransfer);
+    lists_.copyCounters(frame);
+    frame.barrier(Stage::eTransfer, Stage::eHost);
+  }
+
+  Status status() override {
+    const Counters c = lists_.counters();
+    bool again = false;
+    if (c.fragments > lists_.capacity() && !options_->drop) {
+      // A little more than was counted, so that a slowly turning camera does not grow it every
+      // frame.
+      lists_.growNodes(c.fragments + c.fragments / 16ull);
+      again = true;
+    }
+    if (c.deepPixels > lists_.deepCapacity()) {
+      lists_.growDeepList(c.deepPixels + c.deepPixels / 16ull);
+      again = true;
+    }
+    if (c.deepPixels > 0 && rounds_ == 0) {
+      rounds_ = 1;
+      again = true;
+    } else if (c.unfinished > 0) {
+      rounds_ *= 2;
+      again = true;
+    }
+    if (again) return {.recordAgain = true};
+    return {.counters = countersOf(c)};
+  }
+
+ private:
+  void makeStencil(const Device& device, const Target& target) {
+    if (!options_->byInterval() || !options_->fragmentShader()) return;
+    using Aspect = vk::ImageAspectFlagBits;
+    const vk::Format both = vk::Format::eD32SfloatS8Uint, alone = vk::Format::eS8Uint;
+    const auto use = vk::FormatFeatureFlagBits::eDepthStencilAttachment;
+    // A stencil that the capture counts in stands beside the depth that the capture is tested with,
+    // the same 32-bit floats as the opaque depth.
+    const vk::Format format = options_->stencilCounts()
+                                  ? device.supportedFormat({both}, use)
+                                  : device.supportedFormat({alone, both}, use);
+    vk::ImageAspectFlags aspects = Aspect::eStencil;
+    if (format == both) aspects |= Aspect::eDepth;
+    stencil_ =
+        GpuImage(device, memory_,
+                 {format == both ? "depth and stencil" : "stencil", format, target.width(),
+                  target.height(), 1, vk::ImageUsageFlagBits::eDepthStencilAttachment, aspects});
+  }
+
+  void makeCapture(const Device& device) {
+    Pipeline::Graphics description{.fragmentShader = "abuffer/capture.frag",
+                                   .defines = options_->nodes,
+                                   .depthFormat = Target::depthFormat};
+    if (options_->counts()) description.defines.emplace("COUNTS", "1");
+    if (options_->stencilCounts()) {
+      const vk::Format format = stencil_.description().format;
+      description.depthFormat = description.stencilFormat = format;
+      using Operation = vk::StencilOp;
+      description.stencil =
+          vk::StencilOpState(Operation::eKeep, Operation::eIncrementAndClamp, Operation::eKeep,
+                             vk::CompareOp::eAlways, 0xff, 0xff, 0);
+      copyDepth_ = Pipeline::graphics(device, {.vertexShader = "common/fullscreen.vert",
+                                               .fragmentShader = "abuffer/copy_depth.frag",
+                                               .depthFormat = format,
+                                               .depthWrite = true,
+                                               .depthCompare = vk::CompareOp::eAlways,
+                                               .stencilFormat = format});
+    }
+    capture_ = Pipeline::graphics(device, description);
+  }
+
+  void capture(const Frame& frame, const Push& push) {
+    const auto tests = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+    const auto draw = [&] {
+      capture_.bind(frame.commands, frame.bindings);
+      capture_.push(frame.commands, push);
+      if (options_->stencilCounts())
+        frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, 0);
+      frame.drawTransparent();
+    };
+    if (options_->stencilCounts()) frame.stage("copy depth", [&] { copyDepth(frame); });
+    frame.stage("capture", [&] {
+      if (options_->stencilCounts())
+        frame.renderOnDepthStencil(stencil_, vk::AttachmentLoadOp::eLoad, draw);
+      else
+        frame.renderDepthTested({}, draw);
+      frame.barrier(Stage::eFragmentShader | tests,
+                    Stage::eFragmentShader | Stage::eComputeShader | tests);
+    });
+  }
+
+  void copyDepth(const Frame& frame) const {
+    using Access = vk::AccessFlagBits2;
+    using Layout = vk::ImageLayout;
+    const auto tests = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+    stencil_.transition(frame.commands, Layout::eUndefined, Layout::eDepthStencilAttachmentOptimal,
+                        Stage::eAllCommands, Access::eMemoryWrite, tests,
+                        Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
+    frame.renderOnDepthStencil(stencil_, vk::AttachmentLoadOp::eClear, [&] {
+      copyDepth_.bind(frame.commands, frame.bindings);
+      frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, 0);
+      frame.drawFullscreen();
+    });
+    frame.barrier(tests, tests);
+  }
+
+  void sortDeep(const Frame& frame, Push push) const {
+    deep_.bind(frame.commands, frame.bindings);
+    push.rounds = rounds_;
+    for (push.round = 0; push.round < rounds_; ++push.round) {
+      deep_.push(frame.commands, push);
+      frame.commands.dispatchIndirect(lists_.counterBuffer(), offsetof(Counters, deepGroups));
+      frame.barrier(Stage::eComputeShader, Stage::eComputeShader | Stage::eTransfer);
+    }
+  }
+
+  static void pixels(const Frame& frame, const Pipeline& pipeline, const Push& push) {
+    pipeline.bind(frame.commands, frame.bindings);
+    pipeline.push(frame.commands, push);
+    frame.dispatchPixels();
+  }
+
+  std::map<std::string, std::uint64_t> countersOf(const Counters& c) const {
+    const std::uint64_t lost = c.fragments - std::min(c.fragments, lists_.capacity());
+    std::map<std::string, std::uint64_t> counters = {
+        {"fragments", c.fragments}, {"lost_fragments", lost}, {"deep_pixels", c.deepPixels}};
+    if (!counted_) return counters;
+    // Nothing is lost in silence, not even to a device that leaves loops early.
+    if (std::uint64_t(c.blended) + c.truncatedFragments + lost != c.fragments)
+      fail<DeviceError>(
+          "abuffer: {} fragments were captured, {} blended, {} truncated and {} lost: {} does not "
+          "carry out the shaders' loops in full (a pixel may be too deep for it)",
+          c.fragments, c.blended, c.truncatedFragments, lost, device_->info().name);
+    counters["blended_fragments"] = c.blended;
+    counters["max_fragments_per_pixel"] = c.deepest;
+    counters["covered_pixels"] = c.covered;
+    counters["truncated_pixels"] = c.truncatedPixels;
+    counters["truncated_fragments"] = c.truncatedFragments;
+    for (std::uint32_t bin = 0; bin + 1 < BINS; ++bin)
+      counters[fmt::format("pixels_{}", SMALLEST_INTERVAL << bin)] = c.pixels[bin];
+    counters["pixels_more"] = c.pixels[BINS - 1];
+    return counters;
+  }
+
+  const Device* device_ = nullptr;
+  std::optional<Options> options_;
+  ListMemory lists_;
+  GpuImage stencil_;
+  SortPasses sorts_;
+  Pipeline copyDepth_, capture_, deep_, composite_, tally_;
+  std::uint32_t rounds_ = 0;  // dispatches that the sort of deep pixels is spread over
+  bool counted_ = false;      // the last frame was an instrumented one
+};
+
+const RegisterMethod registered({
+    .name = "abuffer",
+    .summary = "exact: per-pixel linked lists, sorted in local memory; backwards memory allocation",
+    .source = "Knowles, Leach, Zambetta 2013, Backwards Memory Allocation and Improved OIT",
+    .exact = true,
+    .parameters = declareParameters(),
+    .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
+    .make = [] { return std::make_unique<Abuffer>(); },
+});
+
+}  // namespace
+}  // namespace oitlab::abuffer
