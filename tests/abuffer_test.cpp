@@ -1,0 +1,301 @@
+// The A-buffer: exact whatever sorts, masks and memory it is given; what it may lose it counts.
+#include <gmock/gmock.h>
+
+#include "quality/compare.h"
+#include "support/gpu.h"
+
+namespace oitlab::testing {
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+
+class Abuffer : public GpuTest {};
+
+const std::vector<std::string> sorts = {"auto",  "insertion", "merge",
+                                        "shell", "bitonic",   "register"};
+const std::vector<std::string> masks = {"stencil", "lists", "stencil_increment"};
+const std::vector<std::string> memories = {"bma", "max", "max_by_interval"};
+
+std::string nameOf(const Settings& settings) {
+  std::string text;
+  for (const auto& [name, value] : settings) text += name + "=" + value + " ";
+  return text;
+}
+
+/// Zero differing pixels, and as many fragments as there are.
+void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
+                 const Settings& settings) {
+  const auto result = fixture.render("abuffer", settings);
+  EXPECT_EQ(result.hash, exact.hash) << nameOf(settings);
+  for (const char* counter : {"fragments", "max_fragments_per_pixel", "covered_pixels"})
+    EXPECT_EQ(result.frame.counters.at(counter), exact.frame.counters.at(counter))
+        << counter << " " << nameOf(settings);
+  EXPECT_EQ(result.frame.counters.at("blended_fragments"), exact.frame.counters.at("fragments"))
+      << nameOf(settings);
+}
+
+/// One column of pixels for each of `depths`, with so many layers in an order that is no order:
+/// every fourth at the depth of the one before it, each with a colour of its own. The view is a
+/// pixel a unit, `rows` high.
+Scene columns(const std::vector<int>& depths, int rows) {
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  std::vector<glm::vec4> colors;
+  const float half = 0.5f * float(depths.size());
+  for (std::size_t column = 0; column < depths.size(); ++column)
+    for (int layer = 0; layer < depths[column]; ++layer) {
+      const int place = (layer * 7919) % depths[column];  // a permutation: 7919 is prime
+      // Near enough to each other that no column moves into the next.
+      const float z = -1e-5f * float(place % 4 == 3 ? place - 1 : place);
+      const float left = 2.0f * (float(column) - half) / float(rows);
+      const float right = left + 2.0f / float(rows), high = 2.0f, low = -2.0f;
+      triangles.push_back({glm::vec3{left, low, z}, {right, low, z}, {right, high, z}});
+      triangles.push_back({glm::vec3{left, low, z}, {right, high, z}, {left, high, z}});
+      const glm::vec4 color{float(layer % 7) / 6, float(layer % 11) / 10, float(layer % 13) / 12,
+                            0.02f + 0.02f * float(layer % 5)};
+      colors.push_back(color);
+      colors.push_back(color);
+    }
+  return triangleScene(triangles, colors, frontCamera());
+}
+
+RenderFixture columnFixture(const std::vector<int>& depths, int rows = 2) {
+  return RenderFixture(columns(depths, rows), std::uint32_t(depths.size()), std::uint32_t(rows));
+}
+
+const std::vector<int> aroundEveryBound = {1,   2,   7,   8,   9,   15,  16,  17,
+                                           31,  32,  33,  63,  64,  65,  100, 127,
+                                           128, 129, 253, 254, 255, 256, 257, 300};
+
+// Equal depths, every choice of sort, mask and memory, and pixels on both sides of max_fragments.
+TEST_F(Abuffer, EveryChoiceIsExactOnRandomTriangles) {
+  for (const std::uint64_t seed : {21, 22}) {
+    RenderFixture fixture(randomSoup(seed, 160), 40, 32);
+    const auto exact = fixture.render("reference");
+    ASSERT_GT(exact.frame.counters.at("max_fragments_per_pixel"), 32u);
+    for (const std::string& memory : memories)
+      for (const std::string& mask : masks)
+        for (const std::string& sort : sorts)
+          expectExact(fixture, exact,
+                      {{"sort_memory", memory},
+                       {"mask", mask},
+                       {"sort", sort},
+                       {"max_fragments", seed == 21 ? "32" : "100"}});
+  }
+}
+
+TEST_F(Abuffer, EveryIntervalIsExactUpToItsBounds) {
+  RenderFixture fixture = columnFixture(aroundEveryBound);
+  const auto exact = fixture.render("reference");
+  ASSERT_EQ(exact.frame.counters.at("covered_pixels"), 2 * aroundEveryBound.size());
+  for (const std::string& sort : sorts)
+    expectExact(fixture, exact, {{"sort", sort}, {"mask", "lists"}, {"max_fragments", "512"}});
+  for (const std::string& mask : masks)
+    for (const char* most : {"8", "16", "64", "200", "255", "256", "512", "1024"})
+      expectExact(fixture, exact, {{"mask", mask}, {"max_fragments", most}});
+}
+
+TEST_F(Abuffer, CountsThePixelsOfEachInterval) {
+  RenderFixture fixture = columnFixture({3, 8, 9, 16, 17, 40, 65, 128, 129, 257, 300}, 2);
+  const Settings all[] = {{{"mask", "stencil"}},
+                          {{"mask", "lists"}},
+                          {{"mask", "stencil_increment"}},
+                          {{"sort_memory", "max"}},
+                          {{"max_fragments", "32"}}};
+  for (const Settings& settings : all) {
+    const auto counters = fixture.render("abuffer", settings).frame.counters;
+    const std::pair<const char*, unsigned> expected[] = {
+        {"pixels_8", 4},   {"pixels_16", 4},   {"pixels_32", 2},
+        {"pixels_64", 2},  {"pixels_128", 4},  {"pixels_256", 2},
+        {"pixels_512", 4}, {"pixels_1024", 0}, {"pixels_more", 0}};
+    for (const auto& [name, pixels] : expected)
+      EXPECT_EQ(counters.at(name), pixels) << name << " " << nameOf(settings);
+  }
+}
+
+// A stencil stops at 255: from there on it does not know.
+TEST_F(Abuffer, PixelsBeyondTheStencilsRangeAreDeep) {
+  RenderFixture fixture = columnFixture({253, 254, 255, 256, 700}, 2);
+  const auto exact = fixture.render("reference");
+  for (const char* most : {"256", "1024"}) {
+    const Settings settings = {{"mask", "stencil_increment"}, {"max_fragments", most}};
+    expectExact(fixture, exact, settings);
+    EXPECT_EQ(fixture.render("abuffer", settings).frame.counters.at("deep_pixels"), 6u);
+  }
+  EXPECT_EQ(fixture.render("abuffer", {{"max_fragments", "1024"}}).frame.counters.at("deep_pixels"),
+            0u);
+}
+
+// Where alpha is cut off the stencil has counted already: more than the list holds, never less.
+TEST_F(Abuffer, FragmentsThatAlphaCutsOffAreOnlyCountedByTheStencil) {
+  Scene scene = columns({20, 300}, 2);
+  scene.materials[0].alphaCutoff = 0.05f;  // of alphas from 0.02 to 0.10
+  RenderFixture fixture(scene, 2, 2);
+  const auto exact = fixture.render("reference");
+  ASSERT_LT(exact.frame.counters.at("fragments"), 2u * 320);
+  for (const std::string& mask : masks) expectExact(fixture, exact, {{"mask", mask}});
+}
+
+// A thousand layers from back to front are the most work for insertion sort.
+TEST_F(Abuffer, SortsAThousandLayersInAnyOrder) {
+  for (const bool backToFront : {true, false}) {
+    std::vector<std::array<glm::vec3, 3>> layers;
+    std::vector<glm::vec4> colors;
+    for (int i = 0; i < 1024; ++i) {
+      const float z = -0.001f * float(backToFront ? 1024 - i : i);
+      layers.push_back({glm::vec3{0, -99, z}, {0, 99, z}, {-99, 0, z}});
+      colors.emplace_back(float(i % 7) / 6, float(i % 11) / 10, float(i % 13) / 12, 0.01f);
+    }
+    RenderFixture fixture(triangleScene(layers, colors, frontCamera()), 4, 2);
+    const auto exact = fixture.render("reference");
+    ASSERT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 1024u);
+    for (const std::string& sort : sorts)
+      expectExact(fixture, exact,
+                  {{"sort", sort}, {"max_fragments", "1024"}, {"sort_memory", "max"}});
+  }
+}
+
+// More than one round of the sort in the lists, beside pixels of a single layer.
+TEST_F(Abuffer, HasNoLimitOfLayers) {
+  RenderFixture fixture = columnFixture({1, 3000, 8});
+  const auto exact = fixture.render("reference");
+  for (const std::string& memory : memories)
+    for (const std::string& mask : masks)
+      expectExact(fixture, exact,
+                  {{"sort_memory", memory}, {"mask", mask}, {"max_fragments", "64"}});
+}
+
+TEST_F(Abuffer, EveryBuiltInSceneIsExact) {
+  for (const SceneInfo& info : sceneCatalogue()) {
+    RenderFixture fixture(loadScene({info.name, {}, 0.01f}), 96, 54);
+    const auto exact = fixture.render("reference");
+    const Settings all[] = {{},
+                            {{"sort_memory", "max"}},
+                            {{"mask", "lists"}, {"max_fragments", "16"}},
+                            {{"mask", "stencil_increment"}, {"sort", "register"}}};
+    for (const Settings& settings : all) {
+      SCOPED_TRACE(info.name);
+      expectExact(fixture, exact, settings);
+    }
+  }
+}
+
+TEST_F(Abuffer, IsTheSameUnderShuffledSubmissionAndFromRunToRun) {
+  const Scene soup = randomSoup(31, 120);
+  RenderFixture plain(soup, 48, 48);
+  const std::string exact = plain.render("reference").hash;
+  for (const std::string& mask : masks) {
+    const Settings settings = {{"mask", mask}, {"max_fragments", "16"}};
+    for (int run = 0; run < 3; ++run)
+      EXPECT_EQ(plain.render("abuffer", settings).hash, exact) << mask;
+    for (const std::uint64_t seed : {1, 2, 3})
+      EXPECT_EQ(RenderFixture(soup, 48, 48, seed).render("abuffer", settings).hash, exact)
+          << mask << ", shuffled with seed " << seed;
+  }
+}
+
+TEST_F(Abuffer, EveryTargetFormatIsThatOfTheReference) {
+  for (const TargetFormat format : {TargetFormat::rgba16f, TargetFormat::rgba8}) {
+    RenderFixture fixture(loadScene({"boxes", {}, 0.1f}), 80, 45, {}, format);
+    const auto exact = fixture.render("reference");
+    for (const std::string& memory : memories)
+      expectExact(fixture, exact, {{"sort_memory", memory}, {"max_fragments", "8"}});
+  }
+}
+
+// Lists may hold less of a colour than there is; what is in local memory makes no difference.
+TEST_F(Abuffer, ColoursAreHeldAsAskedFor) {
+  RenderFixture fixture = columnFixture({1, 9, 40, 100});
+  const auto exact = fixture.render("reference");
+  for (const char* local : {"keys", "fragments"}) {
+    expectExact(fixture, exact, {{"local", local}});
+    for (const auto& [color, error] : {std::pair{"rgba16f", 1e-3}, std::pair{"rgba8", 1.0 / 128}}) {
+      const auto result = fixture.render(
+          "abuffer", {{"local", local}, {"node_color", color}, {"max_fragments", "64"}});
+      const double found = compareImages(result.image, exact.image).maxError;
+      EXPECT_GT(found, 0.0) << color;
+      EXPECT_LT(found, error) << color;
+    }
+  }
+}
+
+TEST_F(Abuffer, GrowsAndLosesNothing) {
+  RenderFixture fixture = columnFixture({30, 40, 50}, 8);
+  const auto roomy = fixture.render("abuffer", {{"initial_depth", "64"}});
+  const auto tight = fixture.render("abuffer", {{"initial_depth", "0"}});
+  EXPECT_EQ(roomy.frame.recordings, 1);
+  EXPECT_EQ(tight.frame.recordings, 2);
+  EXPECT_EQ(tight.hash, roomy.hash);
+  EXPECT_EQ(tight.frame.counters, roomy.frame.counters);
+}
+
+TEST_F(Abuffer, DropsWhatMemoryDoesNotHoldAndCountsIt) {
+  constexpr unsigned pixels = 3 * 8, fragments = 8 * (30 + 40 + 50);
+  RenderFixture fixture = columnFixture({30, 40, 50}, 8);
+  for (const std::string& mask : masks)
+    for (const std::string& memory : memories) {
+      const Settings settings = {{"on_overflow", "drop"},
+                                 {"initial_depth", "10"},
+                                 {"mask", mask},
+                                 {"sort_memory", memory},
+                                 {"max_fragments", "16"}};
+      const auto result = fixture.render("abuffer", settings);
+      EXPECT_EQ(result.frame.counters.at("fragments"), fragments);
+      EXPECT_EQ(result.frame.counters.at("blended_fragments"), 10 * pixels + 1) << nameOf(settings);
+      EXPECT_EQ(result.frame.counters.at("lost_fragments"), fragments - 10 * pixels - 1);
+    }
+}
+
+TEST_F(Abuffer, TruncatesAsThePaperDoesAndCountsIt) {
+  RenderFixture fixture = columnFixture({10, 16, 17, 40, 300}, 2);
+  for (const std::string& mask : masks)
+    for (const std::string& memory : memories)
+      for (const char* sort : {"auto", "register"}) {
+        const Settings settings = {{"deep", "truncate"},
+                                   {"max_fragments", "16"},
+                                   {"mask", mask},
+                                   {"sort_memory", memory},
+                                   {"sort", sort}};
+        const auto counters = fixture.render("abuffer", settings).frame.counters;
+        EXPECT_EQ(counters.at("truncated_pixels"), 2u * 3) << nameOf(settings);
+        EXPECT_EQ(counters.at("truncated_fragments"), 2u * (1 + 24 + 284)) << nameOf(settings);
+        EXPECT_EQ(counters.at("blended_fragments"), 2u * (10 + 4 * 16)) << nameOf(settings);
+      }
+}
+
+TEST_F(Abuffer, EachIntervalIsAStage) {
+  RenderFixture fixture = columnFixture({10, 40});
+  const auto stagesOf = [&](const Settings& settings) {
+    std::vector<std::string> sortsRun;
+    for (const auto& [name, ms] : fixture.render("abuffer", settings).frame.stageMs)
+      if (name.rfind("sort", 0) == 0) sortsRun.push_back(name);
+    return sortsRun;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(stagesOf({{"max_fragments", "32"}}), ElementsAre("sort 8", "sort 16", "sort 32"));
+  EXPECT_THAT(stagesOf({{"sort_memory", "max_by_interval"}, {"max_fragments", "20"}}),
+              ElementsAre("sort 8", "sort 16", "sort 20"));
+  EXPECT_THAT(stagesOf({{"sort_memory", "max"}}), ElementsAre("sort"));
+}
+
+TEST_F(Abuffer, OnlyTheMaskInUseTakesMemory) {
+  RenderFixture fixture(randomSoup(1, 8), 64, 32);
+  const MethodInfo& info = findMethod("abuffer");
+  const auto buffersOf = [&](const Settings& settings) {
+    const auto method =
+        fixture.renderer().prepare(info, Parameters(info.parameters, settings, info.name));
+    return method->memory().byName();
+  };
+  const auto bma = buffersOf({{"initial_depth", "2"}});
+  EXPECT_EQ(bma.at("fragment nodes"), (2u * 64 * 32 + 1) * 28);
+  EXPECT_EQ(bma.at("fragment counts"), 64u * 32 * 4);
+  EXPECT_GE(bma.at("stencil"), 64u * 32);
+  EXPECT_EQ(buffersOf({{"mask", "lists"}}).at("pixel lists"), 64u * 32 * 4);
+  EXPECT_EQ(buffersOf({{"mask", "stencil_increment"}}).count("fragment counts"), 0u);
+  const auto max = buffersOf({{"sort_memory", "max"}});
+  EXPECT_EQ(max.count("fragment counts"), 0u);
+  EXPECT_EQ(max.count("stencil"), 0u);
+  EXPECT_EQ(buffersOf({{"node_color", "rgba8"}, {"initial_depth", "0"}}).at("fragment nodes"), 16u);
+}
+
+}  // namespace
+}  // namespace oitlab::testing
