@@ -47,6 +47,9 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                           &specialization);
   if (subgroupSize != 0 && device.info().has("subgroupSizeControl")) stage.setPNext(&required);
+  // Lanes are then invocations in order, all of them there: gl_SubgroupID counts whole subgroups.
+  if (subgroupSize != 0 && device.info().has("computeFullSubgroups"))
+    stage.setFlags(vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups);
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();

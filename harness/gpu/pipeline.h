@@ -17,7 +17,8 @@ class Pipeline {
   Pipeline() = default;
 
   /// A compute pipeline from shaders/`path`. `subgroupSize` (0 = the device's choice) is required
-  /// through subgroupSizeControl where the device has it.
+  /// through subgroupSizeControl where the device has it, and subgroups are full: the workgroup's
+  /// width must be a multiple of it.
   static Pipeline compute(const Device& device, const std::string& path,
                           const Defines& defines = {}, const Constants& constants = {},
                           std::uint32_t subgroupSize = 0);

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "gpu/pipeline.h"
+#include "raster/raster_types.h"
+#include "render/frame.h"
+
+namespace oitlab::raster {
+
+/// The first two stages of a compute rasterizer after LucidRaster (Jakubowski 2024, section 2):
+/// quad setup and binning. From the scene's transparent triangles it leaves, for one camera, what
+/// rasterization and shading need of each visible triangle, and for each 32 x 32 bin the list of
+/// its primitives. It knows nothing of blending: what becomes of the fragments is the method's.
+///
+/// Memory follows the scene: buffers grow by what was counted, and the frame is recorded again.
+class FrontEnd {
+ public:
+  struct Options {
+    bool backFaceCulling = false;
+    std::uint32_t highTriangles = 1024;  ///< a bin with as many triangles is "high"
+  };
+
+  /// `memory` must outlive this and lists the buffers; `scene` and `target` too. Takes the scene's
+  /// quads, which may take seconds the first time (scene/quads.h). Throws DeviceError when memory
+  /// is short.
+  FrontEnd(const Device& device, const GpuScene& scene, const Target& target, MemoryLedger& memory,
+           const Options& options);
+
+  /// Records the stages "setup" and "binning". After them the lists are visible to compute shaders
+  /// and indirect dispatches, if `RasterCounters::ready`; else the frame is to be recorded again.
+  void record(const Frame& frame);
+
+  /// Once the device is done: makes room where room was short. True: record again.
+  bool grow();
+
+  /// The counts of the last frame.
+  const RasterCounters& counted() const { return readback_.mapped<RasterCounters>()[0]; }
+
+  /// Adds the counters of the stages, by the names of the results.
+  void addCounters(std::map<std::string, std::uint64_t>& counters) const;
+
+  /// Where everything is: valid until grow().
+  RasterPush addresses(const Frame& frame) const;
+
+  /// Of the counters' `low` and `high` dispatches.
+  vk::Buffer counters() const { return counters_.vk(); }
+  std::uint32_t bins() const { return binColumns_ * binRows_; }
+  std::uint32_t inputQuads() const { return quadCount_; }
+
+  /// For tests: fills everything that a frame must write before it reads with `pattern`.
+  void poison(const Commands& commands, std::uint32_t pattern) const;
+
+ private:
+  void makeQuads(const GpuScene& scene);
+  void makeRoomForQuads(std::uint64_t quads);
+  void makeRoomForIrregular(std::uint64_t triangles);
+  void makeRoomForEntries(std::uint64_t entries);
+
+  const Device& device_;
+  MemoryLedger& memory_;
+  Options options_;
+  std::uint32_t quadCount_ = 0, degenerateQuads_ = 0;
+  std::uint32_t binColumns_, binRows_;
+  std::uint32_t quadCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
+  Pipeline setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
+  Buffer quads_, quadIds_, triangles_, irregular_, shading_, attributes_, quadBins_;
+  Buffer bins_, entries_, binLists_, counters_, readback_;
+};
+
+}  // namespace oitlab::raster

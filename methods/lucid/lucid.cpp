@@ -1,0 +1,273 @@
+// LucidRaster (Jakubowski 2024): a software rasterizer in compute shaders with exact OIT. The front
+// end (raster/front_end.h) bins the triangles; here they become tri-half-blocks, sorted lists of
+// these, fragments, and a blended image. Where the paper's two-stage sort goes wrong, the pixel is
+// blended again in exact order.
+#include "lucid/lucid_types.h"
+
+#include "method/method.h"
+#include "raster/front_end.h"
+#include "util/error.h"
+
+namespace oitlab::lucid {
+namespace {
+
+using Stage = vk::PipelineStageFlagBits2;
+
+/// Counted items, and a sixteenth more for a camera that moves on.
+std::uint64_t withSlack(std::uint64_t counted) {
+  return counted + counted / 16 + 64;
+}
+
+}  // namespace
+
+class Lucid : public Method {
+ public:
+  void prepare(const Device& device, const GpuScene& scene, const Target& target,
+               const Parameters& parameters) override {
+    device_ = &device;
+    parameters_ = parameters;
+    frontEnd_ = std::make_unique<raster::FrontEnd>(
+        device, scene, target, memory_,
+        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
+    makePipelines(formatName(target.format()));
+    const std::uint64_t halfBlocks = std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS;
+    blocks_ = Buffer(device, memory_, "half-blocks", halfBlocks * sizeof(HalfBlock));
+    counters_ = Buffer(device, memory_, "lucid counters", sizeof(LucidCounters));
+    readback_ = Buffer(device, memory_, "lucid counters readback", sizeof(LucidCounters),
+                       BufferKind::readback);
+    makeRoomForLists(halfBlocks);
+    makeRoomForRepairs(1024);
+  }
+
+  void record(const Frame& frame) override {
+    if (parameters_.flag("poison")) poison(frame);
+    frontEnd_->record(frame);
+    const LucidPush push = pushOf(frame);
+    auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
+      pipeline.bind(frame.commands, frame.bindings);
+      pipeline.push(frame.commands, push);
+      frame.commands.dispatchIndirect(counters_.vk(), offset);
+    };
+    const auto compute = Stage::eComputeShader;
+    frame.stage("blocks", [&] {
+      fillBuffer(frame.commands, counters_, 0);
+      frame.barrier(Stage::eTransfer, compute);
+      blockLists_.bind(frame.commands, frame.bindings);
+      blockLists_.push(frame.commands, push);
+      frame.commands.dispatch(std::min(frontEnd_->bins(), MAX_GROUPS), 1, 1);
+      frame.barrier(compute, compute | Stage::eDrawIndirect);
+    });
+    // The two write different half-blocks, so that no barrier parts them.
+    frame.stage("high_raster", [&] { indirect(highRaster_, offsetof(LucidCounters, high)); });
+    frame.stage("low_raster", [&] { indirect(lowRaster_, offsetof(LucidCounters, low)); });
+    recordRepair(frame, push);
+    frame.barrier(compute, Stage::eTransfer);
+    frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
+                              vk::BufferCopy(0, 0, sizeof(LucidCounters)));
+    frame.barrier(Stage::eTransfer, Stage::eHost);
+  }
+
+  Status status() override {
+    if (frontEnd_->grow()) return {.recordAgain = true};
+    const LucidCounters& c = readback_.mapped<LucidCounters>()[0];
+    bool again = false;
+    if (c.triHalfBlocks > listCapacity_) {
+      makeRoomForLists(withSlack(c.triHalfBlocks));
+      return {.recordAgain = true};
+    }
+    if (c.walked != c.expected)
+      fail<DeviceError>(
+          "lucid: {} of {} list entries were gone through: {} does not carry out the "
+          "shaders' loops in full (a bin holds too many triangles for it)",
+          c.walked, c.expected, device_->info().name);
+    if (c.repairJobs > repairCapacity_) {
+      makeRoomForRepairs(withSlack(c.repairJobs));
+      again = true;
+    }
+    if (c.deepPixels > deepCapacity_ || c.deepNodes > nodeCapacity_) {
+      makeRoomForDeep(withSlack(c.deepPixels), withSlack(c.deepNodes));
+      again = true;
+    } else if (c.unfinished > 0) {
+      deepRounds_ *= 2;
+      again = true;
+    }
+    if (again) return {.recordAgain = true};
+    if (c.deepCaptured != c.deepNodes || c.deepBlended != c.deepNodes)
+      fail<DeviceError>("lucid: of {} fragments in deep pixels {} were captured and {} blended",
+                        c.deepNodes, c.deepCaptured, c.deepBlended);
+    Status status;
+    frontEnd_->addCounters(status.counters);
+    status.counters["fragments"] = c.samples + c.deepBlended;
+    status.counters["half_blocks"] = c.triHalfBlocks;
+    status.counters["long_lists"] = c.longLists;
+    status.counters["invalid_pixels"] = c.invalidPixels;
+    status.counters["repaired_pixels"] = c.repairedPixels;
+    status.counters["scratch_bytes"] = list_.bytes() + keys_.bytes() + blocks_.bytes();
+    return status;
+  }
+
+ private:
+  bool repairs() const {
+    return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
+  }
+
+  void makePipelines(const std::string& format) {
+    const std::uint32_t lanes = device_->info().subgroupSize;
+    const Defines common = {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
+                            {"TARGET_FORMAT", format},
+                            {"DEPTH_FILTER", std::to_string(parameters_.integer("depth_filter"))}};
+    auto raster = [&](bool high) {
+      Defines defines = common;
+      defines["HIGH"] = high ? "1" : "0";
+      defines["TEAMS"] = high ? "1u" : "LOW_TEAMS";
+      defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
+      return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
+    };
+    // A workgroup a bin: 8 subgroups where these are short, as few hands are at work at a time
+    // then.
+    blockLists_ = Pipeline::compute(*device_, "lucid/blocks.comp", {}, {lanes < 32 ? 64u : 256u});
+    lowRaster_ = raster(false);
+    highRaster_ = raster(true);
+    repair_ = Pipeline::compute(
+        *device_, "lucid/repair.comp",
+        {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")}, {"TARGET_FORMAT", format}}, {}, lanes);
+    deepCapture_ =
+        Pipeline::compute(*device_, "lucid/deep_capture.comp", {{"TARGET_FORMAT", format}});
+    deepResolve_ =
+        Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
+  }
+
+  LucidPush pushOf(const Frame& frame) const {
+    const raster::RasterPush front = frontEnd_->addresses(frame);
+    std::uint32_t flags = std::uint32_t(parameters_.integer("workgroups")) << FLAG_BITS;
+    if (frame.instrumented) flags |= COUNT_SAMPLES;
+    // Without it invalid pixels stay; lists too long to be sorted elsewhere are the repair's even so.
+    if (repairs()) flags |= REPAIR;
+    if (parameters_.flag("visualize_errors")) flags |= SHOW_ERRORS;
+    return {.frame = front.frame,
+            .triangles = front.triangles,
+            .irregular = front.irregular,
+            .shading = front.shading,
+            .attributes = front.attributes,
+            .bins = front.bins,
+            .entries = front.entries,
+            .binLists = front.binLists,
+            .rasterCounters = front.counters,
+            .list = list_.address(),
+            .keys = keys_.address(),
+            .blocks = blocks_.address(),
+            .repairs = repairs_.address(),
+            .counters = counters_.address(),
+            .listCapacity = listCapacity_,
+            .repairCapacity = repairCapacity_,
+            .alphaThreshold = float(parameters_.real("alpha_threshold")),
+            .flags = flags};
+  }
+
+  void recordRepair(const Frame& frame, const LucidPush& lucid) const {
+    const auto compute = Stage::eComputeShader;
+    RepairPush push{.frame = lucid.frame,
+                    .triangles = lucid.triangles,
+                    .shading = lucid.shading,
+                    .attributes = lucid.attributes,
+                    .list = lucid.list,
+                    .repairs = lucid.repairs,
+                    .counters = lucid.counters,
+                    .deepPixels = deepCapacity_ > 0 ? deepPixels_.address() : 0,
+                    .nodes = deepCapacity_ > 0 ? nodes_.address() : 0,
+                    .repairCapacity = repairCapacity_,
+                    .deepCapacity = deepCapacity_,
+                    .nodeCapacity = nodeCapacity_,
+                    .alphaThreshold = lucid.alphaThreshold,
+                    .flags = lucid.flags,
+                    .round = 0,
+                    .rounds = deepRounds_};
+    auto run = [&](const Pipeline& pipeline, std::size_t offset) {
+      pipeline.bind(frame.commands, frame.bindings);
+      pipeline.push(frame.commands, push);
+      frame.commands.dispatchIndirect(counters_.vk(), offset);
+    };
+    frame.stage("repair", [&] {
+      frame.barrier(compute, compute | Stage::eDrawIndirect);
+      run(repair_, offsetof(LucidCounters, repair));
+      if (deepCapacity_ == 0) return;  // no frame has needed it yet
+      frame.barrier(compute, compute | Stage::eDrawIndirect);
+      run(deepCapture_, offsetof(LucidCounters, deep));
+      for (push.round = 0; push.round < push.rounds; ++push.round) {
+        frame.barrier(compute, compute);
+        run(deepResolve_, offsetof(LucidCounters, deepResolve));
+      }
+    });
+  }
+
+  void makeRoomForLists(std::uint64_t entries) {
+    if (entries > ~0u)
+      fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
+    list_ = Buffer();  // give the old ones back first: both may not fit
+    keys_ = Buffer();
+    list_ = Buffer(*device_, memory_, "tri-half-blocks", entries * sizeof(TriHalfBlock));
+    keys_ = Buffer(*device_, memory_, "depth keys", entries * sizeof(std::uint32_t));
+    listCapacity_ = std::uint32_t(entries);
+  }
+
+  void makeRoomForRepairs(std::uint64_t jobs) {
+    repairs_ = Buffer();
+    repairs_ = Buffer(*device_, memory_, "repair jobs", jobs * sizeof(RepairJob));
+    repairCapacity_ = std::uint32_t(jobs);
+  }
+
+  void makeRoomForDeep(std::uint64_t pixels, std::uint64_t nodes) {
+    if (nodes >= LIST_END)
+      fail<DeviceError>("lucid: {} fragments in deep pixels are more than 32 bits can name", nodes);
+    deepPixels_ = Buffer();
+    nodes_ = Buffer();
+    deepPixels_ = Buffer(*device_, memory_, "deep pixels", pixels * sizeof(DeepPixel));
+    nodes_ = Buffer(*device_, memory_, "deep fragments", nodes * sizeof(Node));
+    deepCapacity_ = std::uint32_t(pixels);
+    nodeCapacity_ = std::uint32_t(nodes);
+  }
+
+  // Fills what a frame must write before it reads, for a test that it does.
+  void poison(const Frame& frame) const {
+    constexpr std::uint32_t pattern = 0xcdcdcdcd;
+    frontEnd_->poison(frame.commands, pattern);
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &repairs_, &counters_})
+      fillBuffer(frame.commands, *buffer, pattern);
+    frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
+  }
+
+  const Device* device_ = nullptr;
+  Parameters parameters_;
+  std::unique_ptr<raster::FrontEnd> frontEnd_;
+  std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
+  std::uint32_t deepRounds_ = 1;
+  Pipeline blockLists_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
+  Buffer list_, keys_, blocks_, repairs_, counters_, readback_, deepPixels_, nodes_;
+};
+
+const RegisterMethod registered({
+    .name = "lucid",
+    .summary =
+        "exact: software rasterizer in compute shaders, two-stage sort, wrong pixels repaired",
+    .source = "Jakubowski 2024, LucidRaster: GPU Software Rasterizer for Exact "
+              "Order-Independent Transparency",
+    .exact = true,
+    .parameters =
+        {integer("depth_filter", 3, 1, 16,
+                 "fragments that each pixel keeps back to mend their order"),
+         flag("repair", true,
+              "blend pixels whose order went wrong again in exact order; off: the paper's image"),
+         real("alpha_threshold", 0.0, 0.0, 1.0,
+              "stop blending a pixel at this coverage; 0: never; the paper: 0.9921875"),
+         flag("visualize_errors", false, "paint pixels whose order went wrong red"),
+         flag("backface_culling", false,
+              "drop quads that face away, which no other method does: for the scene table"),
+         integer("workgroups", 0, 0, 65535,
+                 "most workgroups of the raster stage, each going on to the next half-block; "
+                 "0: one for each share of the work"),
+         flag("poison", false, "fill all buffers with rubbish before each frame: a test")},
+    .features = {"subgroupSizeControl", "computeFullSubgroups"},
+    .make = [] { return std::make_unique<Lucid>(); },
+});
+
+}  // namespace oitlab::lucid

@@ -1,0 +1,41 @@
+#version 460
+// Pixels of more than REPAIR_LIST fragments: captures these into linked lists (Yang et al. 2010).
+// Workgroup (x, y) goes through part y of the list of deep pixel x's half-block.
+#include "common/bindings.glsl"
+#include "lucid/half_block.glsl"
+
+#define TEAMS 1u
+#define SUBGROUP_SIZE DEEP_GROUP  // a place in shared memory for each invocation
+layout(local_size_x = DEEP_GROUP) in;
+layout(push_constant, scalar) uniform Push { RepairPush push; };
+
+#include "common/normal.glsl"
+#include "lucid/fragment.glsl"
+
+void main() {
+  const uint number = gl_WorkGroupID.x, self = gl_LocalInvocationIndex;
+  const HalfBlock block = push.deepPixels.at[number].block;
+  const uint bit = push.deepPixels.at[number].bit;
+  const ivec2 corner = cornerOf(block.number, push.frame.c.size);
+  const vec2 pixel = vec2(pixelOf(bit));
+  const float opaque = texelFetch(opaqueDepth, corner + ivec2(pixel), 0).r;
+  const uint begin = gl_WorkGroupID.y * DEEP_PART;
+  const uint end = min(begin + DEEP_PART, block.count);
+  for (uint i = begin + self; i < end; i += DEEP_GROUP) {
+    const TriHalfBlock item = push.list.at[block.first + i];
+    if ((item.mask & (1u << bit)) == 0u) continue;
+    prepare(self, item, corner);
+    const float invW = preparedInvW(self, pixel);
+    if (depthOf(invW) < opaque) continue;
+    const uint index = atomicAdd(push.counters.c.deepCaptured, 1u);
+    if (index >= push.nodeCapacity) continue;
+    Fragment f;
+    const bool kept = shadeFragment(self, pixel, invW, f);
+    Node node;
+    node.color = kept ? f.color : vec4(0.0);  // cut out: blending it changes nothing
+    node.depth = depthOf(invW);
+    node.id = push.triangles.at[item.triangle].id;
+    node.next = atomicExchange(push.deepPixels.at[number].head, index);
+    push.nodes.at[index] = node;
+  }
+}

@@ -1,0 +1,65 @@
+// Sample blending (section 2): a pixel's fragments pass through a queue of DEPTH_FILTER places, which
+// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back.
+#ifndef OITLAB_LUCID_DEPTH_FILTER_GLSL
+#define OITLAB_LUCID_DEPTH_FILTER_GLSL
+
+#include "common/order.glsl"
+#include "lucid/fragment.glsl"
+
+struct Pixel {
+  vec4 accumulated;  // premultiplied
+  float lastDepth;   // of the fragment blended last
+  uint lastId;
+  bool invalid;      // one came after one that it is in front of
+  Fragment queue[DEPTH_FILTER];  // front to back
+};
+
+#define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
+
+bool fragmentBefore(Fragment a, Fragment b) { return isInFront(a.depth, a.id, b.depth, b.id); }
+
+// An empty place is a fragment in front of all, of no weight: it leaves first and changes nothing.
+void clearPixel(out Pixel p) {
+  p.accumulated = vec4(0.0);
+  p.lastDepth = NEAREST;
+  p.lastId = 0u;
+  p.invalid = false;
+  [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
+}
+
+bool isFull(Pixel p) { return push.alphaThreshold > 0.0 && p.accumulated.a >= push.alphaThreshold; }
+
+// Order is right if and only if it never decreases: no wrong pixel goes unnoticed. Fragments behind
+// the alpha threshold are not blended, but their order is still watched.
+void blendFragment(inout Pixel p, Fragment f) {
+  p.invalid = p.invalid || isInFront(f.depth, f.id, p.lastDepth, p.lastId);
+  if (isFull(p)) return;
+  p.lastDepth = f.depth;
+  p.lastId = f.id;
+  p.accumulated = blendUnder(p.accumulated, f.color);
+}
+
+// Of the queue and `f` the nearest leaves.
+void pushFragment(inout Pixel p, Fragment f) {
+  Fragment leaving = p.queue[0], carried = f;
+  if (fragmentBefore(f, leaving)) {
+    carried = leaving;
+    leaving = f;
+  }
+  [[unroll]] for (int i = 1; i < DEPTH_FILTER; ++i) {
+    if (fragmentBefore(p.queue[i], carried)) {
+      p.queue[i - 1] = p.queue[i];
+    } else {
+      p.queue[i - 1] = carried;
+      carried = p.queue[i];
+    }
+  }
+  p.queue[DEPTH_FILTER - 1] = carried;
+  blendFragment(p, leaving);
+}
+
+void drainPixel(inout Pixel p) {
+  [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) blendFragment(p, p.queue[i]);
+}
+
+#endif

@@ -1,0 +1,132 @@
+// LucidRaster (Jakubowski 2024), section 2, stage 3: what its shaders share. C++ and GLSL both
+// include this.
+#ifndef OITLAB_LUCID_TYPES_H
+#define OITLAB_LUCID_TYPES_H
+
+#include "common/lists.h"
+#include "raster/raster_types.h"
+
+#ifdef __cplusplus
+namespace oitlab::lucid {
+using namespace oitlab::raster;
+#endif
+
+// A half-block is 8 x 4 pixels: 4 across and 8 down in a bin. Its number in the frame is
+// bin * 32 + row * 4 + column. Bit y * 8 + x of a coverage mask is the pixel (x, y) of the half-block.
+#define HALF_BLOCK_WIDTH 8u
+#define HALF_BLOCK_HEIGHT 4u
+#define HALF_BLOCKS_ACROSS 4u
+#define HALF_BLOCKS 32u  // of a bin
+#define STRIPS 8u        // rows of half-blocks in a bin
+
+#define LOW_TEAMS 4u      // half-blocks that a workgroup of low_raster works on side by side
+#define LOW_LIST 256u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
+#define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
+#define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
+
+// Flags of LucidPush.
+#define COUNT_SAMPLES 1u
+#define REPAIR 2u
+#define SHOW_ERRORS 4u
+#define FLAG_BITS 4       // above: the cap on workgroups, 0 for none
+
+// The part of a triangle in one half-block: tri-half-block.
+struct TriHalfBlock {
+  uint triangle;  // slot
+  uint mask;      // coverage
+};
+
+// The list of a half-block: tri-half-blocks [first, first + count), in no order.
+struct HalfBlock {
+  uint number;
+  uint first, count;
+};
+
+// Pixels of a half-block to be blended again in exact order.
+struct RepairJob {
+  HalfBlock block;
+  uint pixels;
+};
+
+// A pixel whose fragments go into a linked list.
+struct DeepPixel {
+  HalfBlock block;
+  uint bit;   // of the coverage masks
+  uint head;  // index of a node, or LIST_END
+  uint run;   // length of the sorted runs that a round of the sort ended with
+  uint done;  // 1: blended
+};
+
+#define DEEP_GROUP 64u    // invocations of a workgroup of deep_capture.comp
+#define DEEP_PART 4096u   // tri-half-blocks that it goes through
+
+struct LucidCounters {
+  uint triHalfBlocks;          // of all lists: more than the capacity means overflow
+  uint shortLists, longLists;  // half-blocks by length of list
+  uint groupsDone;             // workgroups of blocks.comp
+  uint ready;                  // 1: the lists of all half-blocks are complete
+  uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
+  uint repairJobs;             // more than the capacity means overflow
+  uint deepPixels;             // pixels too deep for repair.comp: more than the capacity means overflow
+  uint deepNodes;              // their fragments: more than the capacity means overflow
+  uint deepCaptured, deepBlended;  // the same number, or the image is not to be trusted
+  uint unfinished;             // deep pixels whose sort wants more rounds
+  uint invalidPixels, repairedPixels;
+  uint samples;                // fragments: covered, in front of opaque, not cut out
+  Dispatch low, high, repair;  // one workgroup for LOW_TEAMS half-blocks, for one, for one job
+  Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
+  Dispatch deepResolve;        // x: deep pixels
+};
+
+#ifndef __cplusplus
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TriHalfBlockBuffer { TriHalfBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuffer { DeepPixel at[]; };
+#endif
+
+struct LucidPush {
+  ADDRESS_OF(FrameBuffer) frame;
+  ADDRESS_OF(RasterTriangleBuffer) triangles;
+  ADDRESS_OF(IrregularBuffer) irregular;
+  ADDRESS_OF(ShadeTriangleBuffer) shading;
+  ADDRESS_OF(AttributeBuffer) attributes;
+  ADDRESS_OF(BinBuffer) bins;
+  ADDRESS_OF(WordBuffer) entries;
+  ADDRESS_OF(WordBuffer) binLists;
+  ADDRESS_OF(RasterCounterBuffer) rasterCounters;
+  ADDRESS_OF(TriHalfBlockBuffer) list;
+  ADDRESS_OF(WordBuffer) keys;       // parallel to list: depth to sort by
+  ADDRESS_OF(HalfBlockBuffer) blocks;  // with short lists from 0 up, long ones from the end down
+  ADDRESS_OF(RepairBuffer) repairs;
+  ADDRESS_OF(LucidCounterBuffer) counters;
+  uint listCapacity, repairCapacity;
+  float alphaThreshold;
+  uint flags;
+};
+
+// The shaders of the repair need no bins, and have no room for their own buffers beside them.
+struct RepairPush {
+  ADDRESS_OF(FrameBuffer) frame;
+  ADDRESS_OF(RasterTriangleBuffer) triangles;
+  ADDRESS_OF(ShadeTriangleBuffer) shading;
+  ADDRESS_OF(AttributeBuffer) attributes;
+  ADDRESS_OF(TriHalfBlockBuffer) list;
+  ADDRESS_OF(RepairBuffer) repairs;
+  ADDRESS_OF(LucidCounterBuffer) counters;
+  ADDRESS_OF(DeepPixelBuffer) deepPixels;
+  ADDRESS_OF(NodeBuffer) nodes;
+  uint repairCapacity, deepCapacity, nodeCapacity;
+  float alphaThreshold;
+  uint flags;
+  uint round, rounds;  // of the sort of deep pixels
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(RepairPush) <= 128);
+static_assert(sizeof(LucidPush) <= 128);
+}  // namespace oitlab::lucid
+#endif
+
+#endif

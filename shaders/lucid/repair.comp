@@ -1,0 +1,104 @@
+#version 460
+// Exact order for pixels whose order went wrong, and for lists too long for high_raster. The paper
+// proposes to register such pixels and to process them with a slower, conservative algorithm
+// (section 2, "Sample blending"): one subgroup a half-block takes its pixels one after the other,
+// sorts their fragments in full and blends them.
+#include "common/bindings.glsl"
+#include "lucid/half_block.glsl"
+
+#define TEAMS 1u
+#define LIST REPAIR_LIST
+layout(local_size_x = SUBGROUP_SIZE) in;
+layout(push_constant, scalar) uniform Push { RepairPush push; };
+
+#include "common/normal.glsl"
+#include "common/order.glsl"
+#include "lucid/fragment.glsl"
+#include "lucid/sort.glsl"
+
+shared uint found, walked;
+shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fragment out
+
+HalfBlock block;
+uint idOfKey(uvec2 key) { return push.triangles.at[push.list.at[block.first + key.y].triangle].id; }
+
+// Depth at a pixel, the same bits as in blend.comp.
+float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
+  const ShadeTriangle s = push.shading.at[triangle];
+  return boundedInvW(originInvW(s, corner), s, pixel);
+}
+
+void blendPixel(ivec2 corner, uint bit) {
+  const uint lane = gl_SubgroupInvocationID;
+  const uvec2 pixel = pixelOf(bit);
+  const ivec2 place = corner + ivec2(pixel);
+  const float opaque = texelFetch(opaqueDepth, place, 0).r;
+  if (lane == 0u) found = walked = 0u;
+  subgroupBarrier();
+  uint steps = 0u;
+  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
+    ++steps;
+    const TriHalfBlock item = push.list.at[block.first + i];
+    if ((item.mask & (1u << bit)) == 0u) continue;
+    const float invW = invWAt(item.triangle, corner, vec2(pixel));
+    if (depthOf(invW) < opaque) continue;
+    const uint place = atomicAdd(found, 1u);
+    if (place < LIST) keys[place] = uvec2(floatBitsToUint(depthOf(invW)), i);
+  }
+  atomicAdd(walked, steps);
+  subgroupBarrier();
+  const uint count = found;
+  if (lane == 0u) {
+    atomicAdd(push.counters.c.walked, walked);
+    atomicAdd(push.counters.c.expected, block.count);
+    atomicAdd(push.counters.c.repairedPixels, 1u);
+  }
+  if (count > LIST) {
+    if (lane != 0u) return;
+    const uint deep = atomicAdd(push.counters.c.deepPixels, 1u);
+    atomicAdd(push.counters.c.deepNodes, count);
+    atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
+    if (deep >= push.deepCapacity) return;
+    atomicAdd(push.counters.c.deep.x, 1u);
+    atomicAdd(push.counters.c.deepResolve.x, 1u);
+    push.deepPixels.at[deep] = DeepPixel(block, bit, LIST_END, 1u, 0u);
+    return;
+  }
+  sortKeys(0u, count);
+  vec4 accumulated = vec4(0.0);
+  uint samples = 0u;
+  for (uint first = 0u; first < count; first += SUBGROUP_SIZE) {
+    if (first + lane < count) {
+      const TriHalfBlock item = push.list.at[block.first + keys[first + lane].y];
+      prepare(lane, item, corner);
+      Fragment f;
+      const bool kept = shadeFragment(lane, vec2(pixel), preparedInvW(lane, vec2(pixel)), f);
+      colors[lane] = kept ? f.color : vec4(-1.0);
+    }
+    subgroupBarrier();
+    for (uint i = 0u; i < min(SUBGROUP_SIZE, count - first); ++i) {
+      if (colors[i].a < 0.0) continue;
+      ++samples;
+      if (push.alphaThreshold > 0.0 && accumulated.a >= push.alphaThreshold) continue;
+      accumulated = blendUnder(accumulated, colors[i]);
+    }
+    subgroupBarrier();
+  }
+  if (lane != 0u) return;
+  imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
+  if (block.count > HIGH_LIST && (push.flags & COUNT_SAMPLES) != 0u)
+    atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
+}
+
+void main() {
+  const uint jobs = min(push.counters.c.repairJobs, push.repairCapacity);
+  for (uint j = gl_WorkGroupID.x; j < jobs; j += gl_NumWorkGroups.x) {
+    const RepairJob job = push.repairs.at[j];
+    block = job.block;
+    const ivec2 corner = cornerOf(block.number, push.frame.c.size);
+    for (uint rest = job.pixels; rest != 0u; rest &= rest - 1u) {
+      blendPixel(corner, findLSB(rest));
+      subgroupBarrier();
+    }
+  }
+}

@@ -1,0 +1,42 @@
+#version 460
+// Stage 2, binning of large triangles: a workgroup a triangle, an invocation a bin of its box, which
+// is the balance between triangles of unlike sizes that the paper makes on the level of rows. COUNT 1:
+// phase 1, counts; COUNT 0: phase 3, writes.
+#include "raster/coverage.glsl"
+
+layout(local_size_x = LARGE_GROUP) in;
+layout(push_constant, scalar) uniform Push { RasterPush push; };
+
+void main() {
+#if !COUNT
+  if (push.counters.c.ready == 0u) return;
+#endif
+  const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
+  const uint quads = min(push.counters.c.largeQuads, push.quadCapacity);
+  for (uint i = gl_WorkGroupID.x; i < 2u * quads; i += gl_NumWorkGroups.x) {
+    const uint quad = push.quadCapacity - 1u - i / 2u;
+    const uint slot = 2u * quad + i % 2u;
+    const RasterTriangle t = push.triangles.at[slot];
+    if (t.flags == 0u) continue;
+    const BinBox box = push.quadBins.at[quad];
+    const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);
+    const uvec2 extent = uvec2(box.last & 0xffffu, box.last >> 16) - first + 1u;
+    for (uint k = gl_LocalInvocationID.x; k < extent.x * extent.y; k += LARGE_GROUP) {
+      const uvec2 place = first + uvec2(k % extent.x, k / extent.x);
+      const ivec2 region = ivec2(place * BIN_SIZE);
+      // Trivial reject (Abrash 2009): the bin's corner that lies deepest inside is outside.
+      if ((t.flags & TRIANGLE_IRREGULAR) == 0u &&
+          (rejectsBin(makeEdge(t.v[0], t.v[1], region)) ||
+           rejectsBin(makeEdge(t.v[1], t.v[2], region)) ||
+           rejectsBin(makeEdge(t.v[2], t.v[0], region))))
+        continue;
+      const uint bin = place.y * columns + place.x;
+#if COUNT
+      atomicAdd(push.bins.at[bin].triangles, 1u);
+#else
+      const uint cursor = atomicAdd(push.bins.at[bin].triangleCursor, 1u);
+      push.entries.at[push.bins.at[bin].triangleOffset + cursor] = slot;
+#endif
+    }
+  }
+}

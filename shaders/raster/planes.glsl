@@ -1,0 +1,73 @@
+// What is linear on the screen over a triangle: 1 / w, and the barycentric weights over w.
+#ifndef OITLAB_RASTER_PLANES_GLSL
+#define OITLAB_RASTER_PLANES_GLSL
+
+#include "raster/project.glsl"
+
+// Nearer first, then by place: an order of the corners that does not depend on the order in which
+// the triangle lists them, so that triangles on the same three points get the same depths.
+bool comesFirst(Corner a, Corner b) {
+  if (a.invW != b.invW) return a.invW > b.invW;
+  if (a.pixel.x != b.pixel.x) return a.pixel.x < b.pixel.x;
+  return a.pixel.y < b.pixel.y;
+}
+
+void swapCorners(inout Corner a, inout Corner b, inout uint ia, inout uint ib) {
+  const Corner c = a;
+  a = b;
+  b = c;
+  const uint i = ia;
+  ia = ib;
+  ib = i;
+}
+
+// Gradient of a function that is 0 at the first corner, f1 and f2 at the others; d1 and d2 lead to
+// these.
+vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float area) {
+  precise vec2 g;
+  g.x = (f1 * d2.y - f2 * d1.y) / area;
+  g.y = (f2 * d1.x - f1 * d2.x) / area;
+  return g;
+}
+
+// Of three corners that snap. `corners`: their numbers in the quad, reordered as the planes want it.
+ShadeTriangle regularPlanes(Corner a, Corner b, Corner c, inout uvec3 corners) {
+  if (comesFirst(b, a)) swapCorners(a, b, corners.x, corners.y);
+  if (comesFirst(c, b)) swapCorners(b, c, corners.y, corners.z);
+  if (comesFirst(b, a)) swapCorners(a, b, corners.x, corners.y);
+  ShadeTriangle t;
+  precise const vec2 d1 = b.pixel - a.pixel;
+  precise const vec2 d2 = c.pixel - a.pixel;
+  precise const float area = d1.x * d2.y - d1.y * d2.x;
+  t.anchor = a.pixel;
+  t.minInvW = c.invW;
+  t.invW = vec3(a.invW, 0.0, 0.0);
+  t.b1 = vec3(0.0);
+  t.b2 = vec3(0.0);
+  if (area == 0.0) return t;  // thinner than rounding: the nearest corner's attributes throughout
+  precise const float rise1 = b.invW - a.invW;
+  precise const float rise2 = c.invW - a.invW;
+  t.invW.yz = gradient(d1, d2, rise1, rise2, area);
+  t.b1.yz = gradient(d1, d2, b.invW, 0.0, area);
+  t.b2.yz = gradient(d1, d2, 0.0, c.invW, area);
+  return t;
+}
+
+// Of homogeneous corners, wherever they are: the inverse of the matrix (a b c) (Olano and Greer
+// 1997). `anchor`: a pixel that the triangle covers or is near.
+ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor) {
+  a.xy -= anchor * a.z;
+  b.xy -= anchor * b.z;
+  c.xy -= anchor * c.z;
+  const vec3 ea = edgePlane(b, c), eb = edgePlane(c, a), ec = edgePlane(a, b);
+  const float det = dot(a, ea);
+  ShadeTriangle t;
+  t.anchor = anchor;
+  t.minInvW = -1.0;
+  t.invW = ((ea + eb + ec) / det).zxy;
+  t.b1 = (eb / det).zxy;
+  t.b2 = (ec / det).zxy;
+  return t;
+}
+
+#endif

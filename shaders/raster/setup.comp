@@ -1,0 +1,134 @@
+#version 460
+// Stage 1, quad setup (section 2): one invocation a quad. Culls what covers no sample, and stores for
+// the rest what binning, rasterization and shading read. Small quads are counted into their bins.
+//
+// The paper compacts quads between two phases of a workgroup of 1024; here only the places that
+// visible quads are written to are compact.
+#include "raster/planes.glsl"
+
+layout(local_size_x = SETUP_GROUP) in;
+layout(push_constant, scalar) uniform Push { RasterPush push; };
+
+shared uint groupSmall, groupLarge, firstSmall, firstLarge;
+shared uint groupTriangles, groupDegenerate, groupBackFacing;
+
+void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint id, ivec4 box) {
+  RasterTriangle t;
+  t.v = ivec2[3](ivec2(0), ivec2(0), ivec2(0));
+  t.id = id;
+  t.flags = 0u;
+  if (!isEmpty(box)) {
+    const bool regular = a.snaps && b.snaps && c.snaps;
+    const bool positive = regular ? signedArea(a.snapped, b.snapped, c.snapped) > 0
+                                  : dot(edgePlane(a.p, b.p), c.p) > 0.0;
+    t.flags = TRIANGLE_VISIBLE;
+    t.v = positive ? ivec2[3](a.snapped, b.snapped, c.snapped)
+                   : ivec2[3](a.snapped, c.snapped, b.snapped);
+    ShadeTriangle planes;
+    if (regular) {
+      planes = regularPlanes(a, b, c, corners);
+    } else {
+      const uint index = atomicAdd(push.counters.c.irregularTriangles, 1u);
+      const uint last = uint(positive ? c.snaps : b.snaps), middle = uint(positive ? b.snaps : c.snaps);
+      t.flags |= TRIANGLE_IRREGULAR | min(index, MAX_IRREGULAR - 1u) << TRIANGLE_INDEX_SHIFT |
+                 (uint(a.snaps) | middle << 1 | last << 2) << TRIANGLE_SNAPPED_SHIFT;
+      // The anchor lies amid the visible part: farther away it would cost precision.
+      planes = irregularPlanes(a.p, b.p, c.p, vec2((box.xy + box.zw) / 2) + 0.5);
+      if (index < push.irregularCapacity) {
+        push.irregular.at[index].p[0] = a.p;
+        push.irregular.at[index].p[1] = positive ? b.p : c.p;
+        push.irregular.at[index].p[2] = positive ? c.p : b.p;
+      }
+    }
+    t.flags |= (corners.x | corners.y << 2 | corners.z << 4) << TRIANGLE_CORNER_SHIFT;
+    push.shading.at[slot] = planes;
+  }
+  push.triangles.at[slot] = t;
+}
+
+// In world space, as the paper has it: the eye is where the planes x, y and w of the clip space meet.
+bool facesAway(vec3 a, vec3 b, vec3 c) { return dot(edgePlane(a, b), c) > 0.0; }
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) {
+    groupSmall = groupLarge = 0u;
+    groupTriangles = groupDegenerate = groupBackFacing = 0u;
+  }
+  barrier();
+
+  const uint quad = gl_WorkGroupID.y * MAX_GROUPS * SETUP_GROUP + gl_GlobalInvocationID.x;
+  const mat4 viewProjection = push.frame.c.viewProjection;
+  const uvec2 size = push.frame.c.size;
+  const float near = nearPlane(viewProjection);
+  bool visible = false, small = false;
+  uint rank = 0u;
+  uvec4 indices;
+  uvec2 ids;
+  Corner corner[4];
+  ivec4 box[2] = ivec4[2](emptyBox, emptyBox);
+  BinBox bins;
+  uvec2 firstBin, lastBin;
+  if (quad < push.quadCount) {
+    indices = push.quads.at[quad];
+    ids = push.quadIds.at[quad];
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      corner[i] = project(viewProjection, size, push.frame.c.vertices.at[indices[i]].position);
+    box[0] = triangleBox(corner[0], corner[1], corner[2], near, size);
+    const bool single = indices.z == indices.w;
+    if (!single) box[1] = triangleBox(corner[0], corner[2], corner[3], near, size);
+    if (push.backFaceCulling != 0u) {
+      const bool away0 = facesAway(corner[0].p, corner[1].p, corner[2].p);
+      const bool away1 = single || facesAway(corner[0].p, corner[2].p, corner[3].p);
+      if (away0 && away1) {
+        box[0] = box[1] = emptyBox;
+        atomicAdd(groupBackFacing, 1u);
+      }
+    }
+    visible = !isEmpty(box[0]) || !isEmpty(box[1]);
+    if (visible) {
+      const ivec4 first = isEmpty(box[0]) ? box[1] : box[0], second = isEmpty(box[1]) ? box[0] : box[1];
+      firstBin = uvec2(min(first.xy, second.xy)) / BIN_SIZE;
+      lastBin = uvec2(max(first.zw, second.zw)) / BIN_SIZE;
+      const uvec2 extent = lastBin - firstBin + 1u;
+      small = extent.x * extent.y <= SMALL_QUAD_BINS;
+      rank = small ? atomicAdd(groupSmall, 1u) : atomicAdd(groupLarge, 1u);
+      if (push.countAll != 0u) {
+        atomicAdd(groupTriangles, uint(!isEmpty(box[0])) + uint(!isEmpty(box[1])));
+        if (single) atomicAdd(groupDegenerate, 1u);
+      }
+    }
+  }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) {
+    if (groupSmall > 0u) firstSmall = atomicAdd(push.counters.c.smallQuads, groupSmall);
+    if (groupLarge > 0u) firstLarge = atomicAdd(push.counters.c.largeQuads, groupLarge);
+    if (groupTriangles > 0u) atomicAdd(push.counters.c.visibleTriangles, groupTriangles);
+    if (groupDegenerate > 0u) atomicAdd(push.counters.c.visibleDegenerate, groupDegenerate);
+    if (groupBackFacing > 0u) atomicAdd(push.counters.c.culledBackFacing, groupBackFacing);
+  }
+  barrier();
+  if (!visible) return;
+
+  if (small) {
+    const uint columns = (size.x + BIN_SIZE - 1u) / BIN_SIZE;
+    for (uint y = firstBin.y; y <= lastBin.y; ++y)
+      for (uint x = firstBin.x; x <= lastBin.x; ++x)
+        atomicAdd(push.bins.at[y * columns + x].quads, 1u);
+  }
+  const uint place = rank + (small ? firstSmall : firstLarge);
+  if (place >= push.quadCapacity) return;  // counted all the same: the host makes room
+  const uint slot = small ? place : push.quadCapacity - 1u - place;
+  push.quadBins.at[slot] =
+      BinBox(firstBin.x | firstBin.y << 16, lastBin.x | lastBin.y << 16);
+  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0]);
+  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1]);
+  QuadAttributes attributes;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const Vertex v = push.frame.c.vertices.at[indices[i]];
+    attributes.normals[i] = v.normal;
+    attributes.colors[i] = v.color;
+    attributes.uvs[i] = v.uv;
+    attributes.material = v.material;
+  }
+  push.attributes.at[slot] = attributes;
+}
