@@ -22,16 +22,23 @@ std::string nameOf(const Settings& settings) {
   return text;
 }
 
-/// Zero differing pixels, and as many fragments as there are.
+/// Zero differing pixels, in a frame as it is timed and in one whose stages are kept apart, and as
+/// many fragments as there are.
 void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
                  const Settings& settings) {
-  const auto result = fixture.render("abuffer", settings);
-  EXPECT_EQ(result.hash, exact.hash) << nameOf(settings);
+  SCOPED_TRACE(nameOf(settings));
+  const MethodInfo& info = findMethod("abuffer");
+  Renderer& renderer = fixture.renderer();
+  const auto method = renderer.prepare(info, Parameters(info.parameters, settings, info.name));
+  FrameResult frame;
+  for (const bool instrumented : {false, true}) {
+    frame = renderer.render(*method, fixture.defaultView(), instrumented);
+    EXPECT_EQ(imageHash(renderer.target().readBytes(sharedDevice())), exact.hash)
+        << (instrumented ? "stages apart" : "as timed");
+  }
   for (const char* counter : {"fragments", "max_fragments_per_pixel", "covered_pixels"})
-    EXPECT_EQ(result.frame.counters.at(counter), exact.frame.counters.at(counter))
-        << counter << " " << nameOf(settings);
-  EXPECT_EQ(result.frame.counters.at("blended_fragments"), exact.frame.counters.at("fragments"))
-      << nameOf(settings);
+    EXPECT_EQ(frame.counters.at(counter), exact.frame.counters.at(counter)) << counter;
+  EXPECT_EQ(frame.counters.at("blended_fragments"), exact.frame.counters.at("fragments"));
 }
 
 /// One column of pixels for each of `depths`, with so many layers in an order that is no order:
