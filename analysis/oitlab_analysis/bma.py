@@ -44,7 +44,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 SHADES = ("#e8eef2", "#cfdde6", "#b0c7d6", "#8dafc4", "#6893b0", "#457899", "#275d80", "#0e4060",
           "#04263d")
 MARKERS = ("o", "s", "^", "D", "v")
-STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "svg.hashsalt": "oitlab", "text.parse_math": False}
+STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "svg.hashsalt": "oitlab",
+         "text.parse_math": False}
 
 
 def _drawn(draw):
