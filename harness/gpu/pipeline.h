@@ -34,9 +34,16 @@ class Pipeline {
     /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
     vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
     /// Of a pass that has a stencil (Frame::renderOnDepthStencil): the test and what it writes, for
-    /// both faces. The reference value is set by setStencilReference() after bind().
+    /// both faces; by default it lets all pass and keeps what is there. The reference value is set
+    /// by setStencilReference() after bind().
     vk::Format stencilFormat = vk::Format::eUndefined;
-    vk::StencilOpState stencil = {};
+    vk::StencilOpState stencil{vk::StencilOp::eKeep,
+                               vk::StencilOp::eKeep,
+                               vk::StencilOp::eKeep,
+                               vk::CompareOp::eAlways,
+                               0xff,
+                               0xff,
+                               0};
     std::vector<vk::PipelineColorBlendAttachmentState>
         blends;  ///< one per colour format; default: no blending
   };

@@ -4,6 +4,7 @@
 #include "abuffer/abuffer_types.h"
 
 layout(local_size_x = 1) in;
+
 void main() {
   uint begin = 0u;
   for (uint i = 0u; i < push.intervalCount; ++i) {

@@ -3,6 +3,7 @@
 #include "abuffer/finish.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
 void main() {
   if (any(greaterThanEqual(gl_GlobalInvocationID.xy, push.frame.c.size))) return;
   const ivec2 at = ivec2(gl_GlobalInvocationID.xy);

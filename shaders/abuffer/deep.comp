@@ -5,6 +5,7 @@
 #include "common/list_sort.glsl"
 
 layout(local_size_x = LIST_GROUP) in;
+
 void main() {
   const uint index = indexInList(gl_WorkGroupID, gl_LocalInvocationIndex);
   if (index >= min(push.counters.c.deepPixels, push.deepCapacity)) return;

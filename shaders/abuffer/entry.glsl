@@ -1,6 +1,6 @@
 // What a sort moves: an entry for each fragment in the local array.
 //
-// Eight bytes, the depth and the node; the colour and (for equal depths, the id) stay in the node.
+// Eight bytes, the depth and the node; the colour (and the id, for equal depths) stay in the node.
 // With LOCAL_COLOR the colour comes along as it is stored, as in the paper, whose arrays hold 16
 // bytes a fragment: that is half-float colours here.
 #ifndef OITLAB_ABUFFER_ENTRY_GLSL

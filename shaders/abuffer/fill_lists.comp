@@ -4,6 +4,7 @@
 #include "abuffer/abuffer_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
 shared uint places[MOST_INTERVALS];  // counts, then where the block's pixels begin
 
 void main() {

@@ -3,6 +3,7 @@
 #include "abuffer/deep_list.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
 shared uint pixels[MOST_INTERVALS];
 
 void main() {

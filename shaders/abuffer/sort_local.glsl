@@ -1,7 +1,6 @@
-// Sorts of the local array, front to back. MAX_FRAGMENTS is its length and
-// ROUND_LENGTH that rounded up to a power of two. Up to SMALL_UP_TO fragments
-// are sorted by SMALL_SORT, more by LARGE_SORT: a shader for an interval has one sort, the shader for
-// all pixels chooses when it runs (section 4).
+// Sorts of the local array, front to back. MAX_FRAGMENTS is its length, ROUND_LENGTH that rounded up
+// to a power of two. Up to SMALL_UP_TO fragments are sorted by SMALL_SORT, more by LARGE_SORT: a
+// shader for an interval has one sort, the shader for all pixels chooses when it runs (section 4).
 #ifndef OITLAB_ABUFFER_SORT_LOCAL_GLSL
 #define OITLAB_ABUFFER_SORT_LOCAL_GLSL
 
@@ -18,9 +17,9 @@ Entry fragments[MAX_FRAGMENTS];
 #if HAS_SORT(SORT_INSERTION)
 // The inner loop is written out sixteenfold: n * n / 2 steps of a thousand fragments are more
 // iterations than llvmpipe allows an invocation (65,535), a sixteenth of them are not.
-#define STEP                                                     \
+#define STEP                                                       \
   if (hole == 0u || !isBefore(entry, fragments[hole - 1u])) break; \
-  fragments[hole] = fragments[hole - 1u];                        \
+  fragments[hole] = fragments[hole - 1u];                          \
   --hole;
 #define STEPS STEP STEP STEP STEP
 void sortByInsertion(uint count) {

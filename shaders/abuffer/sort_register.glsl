@@ -18,11 +18,11 @@
 
 // Batcher's odd-even merge sort as a network: indices are constants, so that the block is never in
 // memory. Loops would leave it to the compiler to find that out.
-#define S(a, b)                                       \
-  if (isBefore(block[b], block[a])) {                 \
-    const Entry moved = block[a];                     \
-    block[a] = block[b];                              \
-    block[b] = moved;                                 \
+#define S(a, b)                       \
+  if (isBefore(block[b], block[a])) { \
+    const Entry moved = block[a];     \
+    block[a] = block[b];              \
+    block[b] = moved;                 \
   }
 #define S2(a, d) S(a, a + d) S(a + 1, a + 1 + d)
 #define S4(a, d) S2(a, d) S2(a + 2, d)
@@ -57,18 +57,19 @@ uint chainCount = 0u;
 // Sorts the next BLOCK nodes into a chain and returns its first; `node` is then the next block's.
 Entry sortBlock(inout uint node, inout uint count) {
   Entry block[BLOCK];
-#define LOAD(i)                         \
-  block[i] = noEntry();                 \
+#define LOAD(i)                                          \
+  block[i] = noEntry();                                  \
   if (node != LIST_END && count < uint(MAX_FRAGMENTS)) { \
-    block[i] = entryOf(node);           \
-    node = push.nodes.at[node].next;    \
-    ++count;                            \
+    block[i] = entryOf(node);                            \
+    node = push.nodes.at[node].next;                     \
+    ++count;                                             \
   }
   FOR_BLOCK(LOAD)
   NETWORK
   // Empty places are the last ones, and their node is LIST_END: the end of the chain.
-#define LINK(i) \
-  if (block[i].node != LIST_END) push.nodes.at[block[i].node].next = i + 1 < BLOCK ? block[min(i + 1, BLOCK - 1)].node : LIST_END;
+#define LINK(i)                  \
+  if (block[i].node != LIST_END) \
+    push.nodes.at[block[i].node].next = i + 1 < BLOCK ? block[min(i + 1, BLOCK - 1)].node : LIST_END;
   FOR_BLOCK(LINK)
   return block[0];
 }
@@ -76,7 +77,8 @@ Entry sortBlock(inout uint node, inout uint count) {
 // These two as in sort_local.glsl.
 uint loadFragments(inout uint node) {
   uint count = 0u;
-  while (node != LIST_END && count < uint(MAX_FRAGMENTS)) chains[chainCount++] = sortBlock(node, count);
+  while (node != LIST_END && count < uint(MAX_FRAGMENTS))
+    chains[chainCount++] = sortBlock(node, count);
   return count;
 }
 

@@ -4,6 +4,7 @@
 #include "abuffer/abuffer_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
 shared uint blended, deepest, covered, truncatedPixels, truncatedFragments, pixels[BINS];
 
 void main() {

@@ -30,7 +30,8 @@ uint mergeRuns(NodeBuffer nodes, inout uint head, uint run, inout uint iteration
     while (countA > 0u || (countB > 0u && b != LIST_END)) {
       const bool takeA =
           countA > 0u && (countB == 0u || b == LIST_END ||
-                          !isInFront(nodes.at[b].depth, nodes.at[b].id, nodes.at[a].depth, nodes.at[a].id));
+                          !isInFront(nodes.at[b].depth, nodes.at[b].id, nodes.at[a].depth,
+                                     nodes.at[a].id));
       const uint node = takeA ? a : b;
       if (takeA) {
         a = nodes.at[a].next;

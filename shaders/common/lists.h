@@ -40,8 +40,12 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer NodeBuffer {
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HeadBuffer { uint at[]; };
 
 #if NODE_COLOR == 1
-NODE_COLOR_TYPE packColor(vec4 color) { return uvec2(packHalf2x16(color.rg), packHalf2x16(color.ba)); }
-vec4 unpackColor(NODE_COLOR_TYPE packed) { return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y)); }
+NODE_COLOR_TYPE packColor(vec4 color) {
+  return uvec2(packHalf2x16(color.rg), packHalf2x16(color.ba));
+}
+vec4 unpackColor(NODE_COLOR_TYPE packed) {
+  return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+}
 #elif NODE_COLOR == 2
 NODE_COLOR_TYPE packColor(vec4 color) { return packUnorm4x8(color); }
 vec4 unpackColor(NODE_COLOR_TYPE packed) { return unpackUnorm4x8(packed); }

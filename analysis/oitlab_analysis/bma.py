@@ -1,0 +1,321 @@
+"""Tables and figures of Knowles, Leach and Zambetta 2013, "Backwards Memory Allocation and Improved
+OIT", from cells of the methods `abuffer` and `local_memory` (experiments/bma.toml).
+
+Every function takes the tidy table (`cells.as_table`) of one section, that is of one device, build
+and commit, and returns a table, a figure, or None where the table does not have the cells. OIT is the
+paper's word for one shader with room for `Max alloc` fragments a pixel (sort_memory = max), BMA-OIT
+for a shader an interval. Times in ms are medians; speed-ups are their ratios, above 1 where BMA-OIT
+is faster. Published figures are those of a GTX 670 at 1680x1050.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import matplotlib
+import pandas
+from matplotlib.figure import Figure
+
+# Scene -> the paper's name of what it stands in for.
+PAPER_SCENES = {"sponza_like": "Atrium", "smoke": "Smoke", "powerplant": "Power Plant"}
+# Table 1: interval -> speed-up.
+PUBLISHED_TABLE1 = {
+    "sponza_like": {8: 1.14, 16: 0.97, 32: 0.99, 64: 1.00},
+    "smoke": {8: 2.11, 16: 1.18, 32: 1.67, 64: 2.32, 128: 1.68, 256: 1.00},
+    "powerplant": {8: 2.14, 16: 2.74, 32: 3.78, 64: 3.03, 128: 1.99, 256: 1.48, 512: 1.00},
+}
+# Table 2: (scene, max alloc) -> OIT ms, BMA-OIT ms, speed-up.
+PUBLISHED_TABLE2 = {
+    ("sponza_like", 64): (37.6, 37.6, 1.00),
+    ("sponza_like", 128): (53.8, 37.8, 1.42),
+    ("smoke", 256): (167.7, 80.7, 2.08),
+    ("smoke", 512): (273.6, 80.9, 3.38),
+    ("powerplant", 256): (372.0, 203.0, 1.83),
+    ("powerplant", 512): (604.0, 206.0, 2.93),
+}
+INTERVALS = (8, 16, 32, 64, 128, 256, 512, 1024)
+SETTING = ["scene", "view", "width", "height"]
+# What the paper's OIT and BMA-OIT are, beside how much memory they sort in.
+PAPER_CHOICES = {"sort": "auto", "mask": "stencil", "deep": "exact", "on_overflow": "grow",
+                 "node_color": "rgba32f", "local": "keys"}
+SORTS = ("insertion", "merge", "shell", "bitonic", "register")
+# Okabe and Ito's, as in the other charts; intervals go from light to dark.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+SHADES = ("#e8eef2", "#cfdde6", "#b0c7d6", "#8dafc4", "#6893b0", "#457899", "#275d80", "#0e4060",
+          "#04263d")
+MARKERS = ("o", "s", "^", "D", "v")
+STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "svg.hashsalt": "oitlab",
+         "text.parse_math": False}
+
+
+def _drawn(draw):
+    """Draws in the style of the other charts; None from an empty table."""
+    @functools.wraps(draw)
+    def styled(table: pandas.DataFrame) -> Figure | None:
+        with matplotlib.rc_context(STYLE):
+            return draw(table)
+    return styled
+
+
+def bma_table1(table: pandas.DataFrame) -> pandas.DataFrame | None:
+    """Speed-up of BMA-OIT over OIT by interval: how long the interval's pixels take in the shader of
+    OIT (max_by_interval) over how long in their own. One column a setting, and the paper's."""
+    cells = _abuffer(table, **PAPER_CHOICES)
+    columns: dict[str, dict[int, float]] = {}
+    for (scene, *_), same in _settings(cells):
+        rows = _latest_pair(same, "max_by_interval", "bma")
+        if rows is None:
+            continue
+        allocated, oit, bma = rows
+        name = _column_name(scene, bma, columns) + f", max alloc {allocated}"
+        columns[name] = {
+            interval: oit[f"stage.sort {interval}_ms"] / bma[f"stage.sort {interval}_ms"]
+            for interval in _run_intervals(bma)
+            if oit.get(f"stage.sort {interval}_ms", 0) > 0
+            and bma[f"stage.sort {interval}_ms"] > 0
+        }
+        published = PUBLISHED_TABLE1.get(scene)
+        if published:
+            columns.setdefault(f"{PAPER_SCENES[scene]} (paper)", published)
+    if not columns:
+        return None
+    result = pandas.DataFrame(columns).sort_index()
+    result.index.name = "Interval"
+    return result
+
+
+def bma_table2(table: pandas.DataFrame) -> pandas.DataFrame | None:
+    """Times of OIT and BMA-OIT by the largest number of fragments they sort in local memory."""
+    cells = _abuffer(table, **PAPER_CHOICES)
+    cells = cells[~cells["view"].str.startswith("path:")] if not cells.empty else cells
+    rows = []
+    for (scene, view, width, height), same in _settings(cells):
+        for allocated in sorted(same["param.max_fragments"].unique()):
+            of = same[same["param.max_fragments"] == allocated]
+            oit, bma = _cell(of, "max"), _cell(of, "bma")
+            if oit is None or bma is None:
+                continue
+            paper = PUBLISHED_TABLE2.get((scene, int(allocated)), (None, None, None))
+            rows.append({
+                "Scene": scene, "View": view, "Size": f"{width}×{height}",
+                "Total polys": bma["triangles"], "Total frags": bma.get("counter.fragments"),
+                "Peak depth": bma.get("counter.max_fragments_per_pixel"),
+                "Max alloc": int(allocated),
+                "OIT (ms)": oit["frame_ms.median"], "BMA-OIT (ms)": bma["frame_ms.median"],
+                "Speedup": oit["frame_ms.median"] / bma["frame_ms.median"],
+                "OIT, paper (ms)": paper[0], "BMA-OIT, paper (ms)": paper[1],
+                "Speedup, paper": paper[2],
+            })
+    return pandas.DataFrame(rows) if rows else None
+
+
+@_drawn
+def bma_figure3(table: pandas.DataFrame) -> Figure | None:
+    """Frame time against the local memory of a shader that hardly uses it."""
+    cells = _measured(table, "local_memory")
+    if cells.empty:
+        return None
+    figure, axes = _figure(cells)
+    for index, (passes, same) in enumerate(cells.groupby("param.passes")):
+        same = same.sort_values("param.size")
+        axes.plot(same["param.size"] * 16, same["frame_ms.median"], color=COLOURS[index % 5],
+                  marker=MARKERS[index % 5], markersize=4, linewidth=1,
+                  label=f"{passes:g} full-screen passes")
+    axes.set_xlabel("local memory a thread, bytes")
+    axes.set_ylabel("frame time, ms")
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False)
+    return figure
+
+
+@_drawn
+def bma_figure5(table: pandas.DataFrame) -> Figure | None:
+    """Pixels by interval of their number of fragments, on a log scale."""
+    cells = _measured(table, "abuffer")
+    if cells.empty:
+        return None
+    cells = cells[~cells["view"].str.startswith("path:")]
+    counted = [(name, rows.iloc[0]) for name, rows in _settings(cells)
+               if any(rows.iloc[0].get(_pixels(i), 0) > 0 for i in INTERVALS)]
+    if not counted:
+        return None
+    figure, axes = _figure(pandas.DataFrame([row for _, row in counted]), times=False)
+    most = max(i for i in INTERVALS for _, row in counted if row.get(_pixels(i), 0) > 0)
+    shown = [interval for interval in INTERVALS if interval <= most]
+    width = 0.8 / len(counted)
+    scenes = [scene for (scene, *_), _ in counted]
+    for index, ((scene, view, *_), row) in enumerate(counted):
+        places = [i + (index - (len(counted) - 1) / 2) * width for i in range(len(shown))]
+        axes.bar(places, [row.get(_pixels(i), 0) for i in shown], width,
+                 color=COLOURS[index % 5], edgecolor="black", linewidth=0.5,
+                 label=_scene_name(scene) + ("" if scenes.count(scene) == 1 else f", {view}"))
+    axes.set_yscale("log")
+    axes.set_xticks(range(len(shown)), [_range(i) for i in shown])
+    axes.set_xlabel("fragments a pixel")
+    axes.set_ylabel("pixels")
+    axes.legend(frameon=False)
+    return figure
+
+
+@_drawn
+def bma_figure7(table: pandas.DataFrame) -> Figure | None:
+    """A fly-through: times of OIT and BMA-OIT over the depth complexity of each frame; below, the
+    deep intervals by themselves (the paper's figure 8)."""
+    cells = _abuffer(table, **PAPER_CHOICES)
+    cells = cells[cells["view"].str.startswith("path:")] if not cells.empty else cells
+    if cells.empty:
+        return None
+    cells = cells.assign(
+        path=cells["view"].str.partition("@")[0], at=cells["view"].str.partition("@")[2].astype(float))
+    first = cells.iloc[0]  # one scene, path, size and allocation a figure
+    key = ["scene", "path", "width", "height", "param.max_fragments"]
+    cells = cells[(cells[key] == first[key]).all(axis=1)].sort_values("at")
+    bma, oit = (cells[cells["param.sort_memory"] == memory] for memory in ("bma", "max"))
+    counted = bma if not bma.empty else oit
+    if len(counted) < 2:
+        return None
+    figure, axes = _figure(cells, rows=2)
+    times, deep = axes
+    shown = [i for i in INTERVALS if _pixels(i) in counted and counted[_pixels(i)].sum() > 0]
+    pixels = times.twinx()
+    pixels.stackplot(counted["at"], [counted[_pixels(i)] for i in shown],
+                     colors=[SHADES[INTERVALS.index(i)] for i in shown],
+                     labels=[_range(i) for i in shown])
+    times.set_zorder(pixels.get_zorder() + 1)
+    times.patch.set_visible(False)
+    for rows, label, colour, marker in ((oit, "OIT", COLOURS[1], "s"),
+                                        (bma, "BMA-OIT", "black", "o")):
+        times.plot(rows["at"], rows["frame_ms.median"], color=colour, marker=marker, markersize=4,
+                   label=label)
+    allocated = int(first["param.max_fragments"])
+    figure.suptitle(f"{_scene_name(first['scene'])}, {first['path']}, max alloc {allocated}",
+                    size=9, weight="bold")
+    times.set_ylabel("frame time, ms")
+    times.set_ylim(bottom=0)
+    pixels.set_ylabel("pixels, by their fragments")
+    handles = [*times.get_legend_handles_labels()[0], *pixels.get_legend_handles_labels()[0]]
+    times.legend(handles=handles, loc="lower left", bbox_to_anchor=(0, 1), frameon=False,
+                 ncol=min(len(handles), 6))
+    deepest = [i for i in shown if i > 32] or shown[-1:]
+    bottom = [0.0] * len(counted)
+    for interval in deepest:
+        top = [b + p for b, p in zip(bottom, counted[_pixels(interval)])]
+        deep.fill_between(counted["at"], bottom, top, color=SHADES[INTERVALS.index(interval)],
+                          label=_range(interval))
+        bottom = top
+    deep.set_ylim(bottom=0)
+    deep.set_ylabel("pixels")
+    deep.set_xlabel("place on the path, 0 to 1")
+    deep.legend(loc="upper left", frameon=False)
+    return figure
+
+
+@_drawn
+def bma_figure9(table: pandas.DataFrame) -> Figure | None:
+    """Times of the sorts relative to insertion sort's, by interval."""
+    choices = {name: value for name, value in PAPER_CHOICES.items() if name != "sort"}
+    cells = _abuffer(table, sort_memory="bma", **choices)
+    best: tuple[int, list] | None = None
+    for name, same in _settings(cells):
+        for allocated, rows in same.groupby("param.max_fragments"):
+            rows = rows.drop_duplicates("param.sort").set_index("param.sort")
+            sorts = [sort for sort in SORTS if sort in rows.index]
+            if "insertion" in sorts and len(sorts) > 1 and (best is None or len(sorts) >= best[0]):
+                best = (len(sorts), [name, int(allocated), rows, sorts])
+    if best is None:
+        return None
+    (scene, *_), _, rows, sorts = best[1]
+    base = rows.loc["insertion"]
+    shown = [i for i in _run_intervals(base) if base[f"stage.sort {i}_ms"] > 0]
+    if not shown:
+        return None
+    figure, axes = _figure(rows)
+    for index, sort in enumerate(sorts):
+        times = [rows.loc[sort].get(f"stage.sort {i}_ms") for i in shown]
+        axes.plot(range(len(shown)), [t / base[f"stage.sort {i}_ms"] for t, i in zip(times, shown)],
+                  color=COLOURS[index], marker=MARKERS[index], markersize=5, label=sort)
+    axes.set_title(_scene_name(scene), loc="left", size=9, weight="bold")
+    axes.set_xticks(range(len(shown)), [_range(i) for i in shown])
+    axes.set_xlabel("fragments a pixel")
+    axes.set_ylabel("time, relative to insertion sort")
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False, loc="lower left", ncol=len(sorts))
+    return figure
+
+
+def _measured(table: pandas.DataFrame, method: str) -> pandas.DataFrame:
+    if table.empty or "method" not in table:
+        return pandas.DataFrame()
+    return table[(table["method"] == method) & (table["status"] == "ok")]
+
+
+def _abuffer(table: pandas.DataFrame, **choices: str) -> pandas.DataFrame:
+    cells = _measured(table, "abuffer")
+    for name, value in choices.items():
+        if cells.empty:
+            break
+        cells = cells[cells[f"param.{name}"] == value]
+    return cells
+
+
+def _settings(cells: pandas.DataFrame) -> list[tuple[tuple, pandas.DataFrame]]:
+    """The cells by scene, view and size, the paper's scenes first and in its order."""
+    order = list(PAPER_SCENES)
+    groups = [] if cells.empty else list(cells.groupby(SETTING, sort=False))
+    return sorted(groups, key=lambda group: order.index(group[0][0]) if group[0][0] in order
+                  else len(order))
+
+
+def _cell(cells: pandas.DataFrame, memory: str) -> pandas.Series | None:
+    found = cells[cells["param.sort_memory"] == memory]
+    return None if found.empty else found.iloc[0]
+
+
+def _latest_pair(cells: pandas.DataFrame, one: str, other: str):
+    """The largest max_fragments that both have, and their cells."""
+    for allocated in sorted(cells["param.max_fragments"].unique(), reverse=True):
+        of = cells[cells["param.max_fragments"] == allocated]
+        first, second = _cell(of, one), _cell(of, other)
+        if first is not None and second is not None:
+            return int(allocated), first, second
+    return None
+
+
+def _run_intervals(row: pandas.Series) -> list[int]:
+    """The intervals that held pixels and whose stage was timed."""
+    return [i for i in INTERVALS
+            if row.get(_pixels(i), 0) > 0 and row.get(f"stage.sort {i}_ms", 0) > 0]
+
+
+def _pixels(interval: int) -> str:
+    return f"counter.pixels_{interval}"
+
+
+def _range(interval: int) -> str:
+    return f"1–{interval}" if interval == 8 else f"{interval // 2 + 1}–{interval}"
+
+
+def _scene_name(scene: str) -> str:
+    return f"{scene} ({PAPER_SCENES[scene]})" if scene in PAPER_SCENES else scene
+
+
+def _column_name(scene: str, row: pandas.Series, taken: dict) -> str:
+    name = _scene_name(scene)
+    return f"{name}, {row['view']}" if any(c.startswith(name) for c in taken) else name
+
+
+def _figure(cells: pandas.DataFrame, rows: int = 1, times: bool = True):
+    """A figure and its axes, with what was measured on beneath them: figures get copied around."""
+    figure = Figure(figsize=(7, 3.6 if rows == 1 else 5.5), layout="constrained")
+    axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 2)[:rows] if rows > 1 else None)
+    for each in axes if rows > 1 else [axes]:
+        each.spines[["top", "right"]].set_visible(False)
+        each.grid(axis="y", color="#dddddd", linewidth=0.6)
+        each.set_axisbelow(True)
+    first = cells.iloc[0]
+    text = f"{first['device']}, {first['width']}×{first['height']}, commit {first['commit']}"
+    if times and first["device_type"] == "cpu":
+        text += "\nCPU device: these times say nothing about GPUs"
+    figure.supxlabel(text, size=7, color="#555555")
+    return figure, axes
