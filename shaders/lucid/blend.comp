@@ -2,8 +2,8 @@
 // Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Low
 // raster: LIST = LOW_LIST, several teams a workgroup; high raster: LIST = HIGH_LIST, one.
 //
-// SUBGROUP_SIZE lanes own 32 pixels, 32 / SUBGROUP_SIZE each; of a subgroup of 64 half the lanes own
-// none.
+// Each lane owns a pixel: a subgroup of less than 32 lanes goes through the list several times, and of
+// one of 64 half the lanes own none.
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
@@ -15,12 +15,12 @@ layout(push_constant, scalar) uniform Push { LucidPush push; };
 #include "lucid/sort.glsl"
 
 #define OWNERS min(SUBGROUP_SIZE, 32u)
-#define PIXELS (32u / OWNERS)
 
-shared uint ends[TEAMS * SUBGROUP_SIZE];       // running sum of the fragments of prepared triangles
+shared uint masks[TEAMS * SUBGROUP_SIZE];      // coverage by the prepared triangles
+shared uint ends[TEAMS * SUBGROUP_SIZE];       // running sum of their fragments
 shared vec4 sampleColors[TEAMS * OWNERS];
 shared uvec2 sampleKeys[TEAMS * OWNERS];       // depth, id
-shared uint samplesOf[TEAMS * 32u];            // bit i: sample i falls on this pixel
+shared uint samplesOf[TEAMS * OWNERS];            // bit i: sample i falls on this pixel
 
 uint listBegin;
 uint idOfKey(uvec2 key) { return push.triangles.at[push.list.at[listBegin + key.y].triangle].id; }
@@ -44,120 +44,118 @@ void addJob(HalfBlock block, uint pixels) {
   if (job < push.repairCapacity) push.repairs.at[job] = RepairJob(block, pixels);
 }
 
-void blendHalfBlock(HalfBlock block) {
-  const uint lane = gl_SubgroupInvocationID;
-  const uint team = gl_SubgroupID;
-  const uint firstKey = team * LIST, firstPrepared = team * SUBGROUP_SIZE;
-  const ivec2 corner = cornerOf(block.number, push.frame.c.size);
-  listBegin = block.first;
-  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
-    keys[firstKey + i] = uvec2(push.keys.at[block.first + i], i);
-  sortKeys(firstKey, block.count);
+// Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
+// pixels whose order went wrong.
+uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
+  const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
+  const uint firstKey = team * LIST, firstPrepared = team * SUBGROUP_SIZE, firstSample = team * OWNERS;
+  const vec2 pixel = vec2(pixelOf(bit));
+  const ivec2 place = corner + ivec2(pixel);
+  const float opaque = texelFetch(opaqueDepth, min(place, ivec2(push.frame.c.size) - 1), 0).r;
+  Pixel p;
+  clearPixel(p);
+  if (owner) samplesOf[firstSample + lane] = 0u;
 
-  Pixel pixels[PIXELS];
-  float opaque[PIXELS];
-  [[unroll]] for (uint p = 0u; p < PIXELS; ++p) {
-    clearPixel(pixels[p]);
-    const uint bit = p * OWNERS + lane;
-    const ivec2 place = min(corner + ivec2(pixelOf(bit)), ivec2(push.frame.c.size) - 1);
-    opaque[p] = texelFetch(opaqueDepth, place, 0).r;
-    if (lane < OWNERS) samplesOf[team * 32u + bit] = 0u;
-  }
-
-  uint covered = 0u, samples = 0u;
+  uint covered = 0u, samples = 0u, turns = 0u;
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
     const uint batch = min(SUBGROUP_SIZE, block.count - first);
     uint mask = 0u;
     if (lane < batch) {
       const TriHalfBlock item = push.list.at[block.first + keys[firstKey + first + lane].y];
-      mask = item.mask;
-      prepare(firstPrepared + lane, item, corner);
+      mask = item.mask & owned;
+      if (mask != 0u) prepare(firstPrepared + lane, item, corner);
     }
     const uint end = subgroupInclusiveAdd(bitCount(mask));
     const uint fragments = subgroupAdd(bitCount(mask));
+    masks[firstPrepared + lane] = mask;
     ends[firstPrepared + lane] = end;
     covered |= subgroupOr(mask);
     subgroupBarrier();
 
-    // Where triangles cover most of the half-block, each lane shades its own pixels; where they are
-    // small, lanes take samples as they come and hand them to the pixels they fall on.
-    if (2u * fragments >= 32u * batch) {
+    // Where triangles cover most of the pixels, each lane shades its own; where they are small, lanes
+    // take samples as they come and hand them to the pixels they fall on.
+    if (2u * fragments >= OWNERS * batch) {
       for (uint k = 0u; k < batch; ++k) {
+        ++turns;
         const uint at = firstPrepared + k;
-        const uint cover = preparedMask(at);
-        [[unroll]] for (uint p = 0u; p < PIXELS; ++p) {
-          const uint bit = p * OWNERS + lane;
-          if (lane >= OWNERS || (cover & (1u << bit)) == 0u) continue;
-          const float invW = preparedInvW(at, vec2(pixelOf(bit)));
-          if (depthOf(invW) < opaque[p]) continue;
-          Fragment f;
-          if (!shadeFragment(at, vec2(pixelOf(bit)), invW, f)) continue;
-          pushFragment(pixels[p], f);
-          ++samples;
-        }
+        if (!owner || (masks[at] & (1u << bit)) == 0u) continue;
+        const float invW = preparedInvW(at, pixel);
+        if (depthOf(invW) < opaque) continue;
+        Fragment f;
+        if (!shadeFragment(at, pixel, invW, f)) continue;
+        pushFragment(p, f);
+        ++samples;
       }
     } else {
+      turns += batch - (fragments + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
       for (uint chunk = 0u; chunk < fragments; chunk += OWNERS) {
+        ++turns;
         const uint n = chunk + lane;
-        if (lane < OWNERS && n < fragments) {
+        if (owner && n < fragments) {
           uint k = 0u;  // the first triangle whose samples end beyond n
           [[unroll]] for (uint step = SUBGROUP_SIZE / 2u; step > 0u; step /= 2u)
             if (ends[firstPrepared + k + step - 1u] <= n) k += step;
           const uint at = firstPrepared + k;
-          const uint bit = nthBit(preparedMask(at), n - (k == 0u ? 0u : ends[at - 1u]));
-          const float invW = preparedInvW(at, vec2(pixelOf(bit)));
+          const uint hit = nthBit(masks[at], n - (k == 0u ? 0u : ends[at - 1u]));
+          const vec2 hitPixel = vec2(pixelOf(hit));
           Fragment f;
-          if (shadeFragment(at, vec2(pixelOf(bit)), invW, f)) {
-            sampleColors[team * OWNERS + lane] = f.color;
-            sampleKeys[team * OWNERS + lane] = uvec2(floatBitsToUint(f.depth), f.id);
-            atomicOr(samplesOf[team * 32u + bit], 1u << lane);
+          if (shadeFragment(at, hitPixel, preparedInvW(at, hitPixel), f)) {
+            sampleColors[firstSample + lane] = f.color;
+            sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.depth), f.id);
+            atomicOr(samplesOf[firstSample + hit % OWNERS], 1u << lane);
           }
         }
         subgroupBarrier();
-        [[unroll]] for (uint p = 0u; p < PIXELS; ++p) {
-          const uint bit = p * OWNERS + lane;
-          uint arrived = lane < OWNERS ? samplesOf[team * 32u + bit] : 0u;
-          if (arrived != 0u) samplesOf[team * 32u + bit] = 0u;
-          while (arrived != 0u) {
-            const uint i = team * OWNERS + findLSB(arrived);
-            arrived &= arrived - 1u;
-            const Fragment f =
-                Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
-            if (f.depth < opaque[p]) continue;
-            pushFragment(pixels[p], f);
-            ++samples;
-          }
+        uint arrived = owner ? samplesOf[firstSample + lane] : 0u;
+        if (arrived != 0u) samplesOf[firstSample + lane] = 0u;
+        while (arrived != 0u) {
+          const uint i = firstSample + findLSB(arrived);
+          arrived &= arrived - 1u;
+          const Fragment f = Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
+          if (f.depth < opaque) continue;
+          pushFragment(p, f);
+          ++samples;
         }
         subgroupBarrier();
       }
     }
     subgroupBarrier();
   }
+  drainPixel(p);
 
+  const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
+  if (lane == 0u) {
+    if (allSamples > 0u) atomicAdd(push.counters.c.samples, allSamples);
+#if VERIFY_LOOPS
+    atomicAdd(push.counters.c.blended, turns);
+#endif
+  }
+  if (!owner || (covered & (1u << bit)) == 0u) return 0u;
+  if (p.invalid && (push.flags & (REPAIR | SHOW_ERRORS)) != 0u) {  // else repair.comp composes it
+    if ((push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
+  } else {
+    imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
+  }
+  return p.invalid ? 1u << bit : 0u;
+}
+
+void blendHalfBlock(HalfBlock block) {
+  const uint lane = gl_SubgroupInvocationID, firstKey = gl_SubgroupID * LIST;
+  const ivec2 corner = cornerOf(block.number, push.frame.c.size);
+  listBegin = block.first;
+  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
+    keys[firstKey + i] = uvec2(push.keys.at[block.first + i], i);
+  sortKeys(firstKey, block.count);
   uint invalid = 0u;
-  [[unroll]] for (uint p = 0u; p < PIXELS; ++p) {
-    const uint bit = p * OWNERS + lane;
-    drainPixel(pixels[p]);
-    if (lane >= OWNERS || (covered & (1u << bit)) == 0u) continue;
-    const ivec2 place = corner + ivec2(pixelOf(bit));
-    if (pixels[p].invalid) {
-      invalid |= 1u << bit;
-      if ((push.flags & SHOW_ERRORS) != 0u) {
-        imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
-        continue;
-      }
-      if ((push.flags & REPAIR) != 0u) continue;  // repair.comp composes it
-    }
-    imageStore(target, place, overOpaque(pixels[p].accumulated, imageLoad(target, place)));
+  for (uint begin = 0u; begin < 32u; begin += OWNERS) {
+    const uint owned = (0xffffffffu >> (32u - OWNERS)) << begin;
+    invalid |= sweep(block, corner, owned, min(begin + lane, 31u), lane < OWNERS);
+    subgroupBarrier();
   }
   invalid = subgroupOr(invalid);
-  const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
-  if (lane != 0u) return;
-  if (allSamples > 0u) atomicAdd(push.counters.c.samples, allSamples);
-  if (invalid == 0u) return;
+  if (lane != 0u || invalid == 0u) return;
   atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
-  if ((push.flags & REPAIR) == 0u) return;
-  addJob(block, invalid);
+  if ((push.flags & REPAIR) != 0u) addJob(block, invalid);
 }
 
 // A list that is too long to sort here: each of its pixels is a job of its own for repair.comp,
@@ -168,6 +166,9 @@ void handOver(HalfBlock block) {
     covered |= push.list.at[block.first + i].mask;
   covered = subgroupOr(covered);
   if (gl_SubgroupInvocationID != 0u) return;
+#if VERIFY_LOOPS
+  atomicAdd(push.counters.c.blended, block.count * (32u / OWNERS));
+#endif
   for (uint rest = covered; rest != 0u; rest &= rest - 1u) addJob(block, rest & (0u - rest));
 }
 

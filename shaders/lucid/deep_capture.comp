@@ -32,7 +32,7 @@ void main() {
     Fragment f;
     const bool kept = shadeFragment(self, pixel, invW, f);
     Node node;
-    node.color = kept ? f.color : vec4(0.0);  // cut out: blending it changes nothing
+    node.color = kept ? f.color : vec4(-1.0);  // cut out: counted, not blended
     node.depth = depthOf(invW);
     node.id = push.triangles.at[item.triangle].id;
     node.next = atomicExchange(push.deepPixels.at[number].head, index);

@@ -4,26 +4,34 @@
 #include "common/list_sort.glsl"
 #include "lucid/half_block.glsl"
 
-layout(local_size_x = 1) in;  // few and long: side by side they would wait for the longest
+// Several lists a workgroup: where a workgroup has but one, and all is uniform, llvmpipe (Mesa 22.3)
+// loses links of the list.
+layout(local_size_x = DEEP_RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
 void main() {
-  const uint number = gl_WorkGroupID.x;
+  const uint number = gl_GlobalInvocationID.x;
+  if (number >= min(push.counters.c.deepPixels, push.deepCapacity)) return;
   if (push.counters.c.deepCaptured > push.nodeCapacity) return;
   DeepPixel deep = push.deepPixels.at[number];
   if (deep.done != 0u) return;
   if (sortWithinBudget(push.nodes, deep.head, deep.run)) {
     vec4 accumulated = vec4(0.0);
-    uint count = 0u;
+    uint count = 0u, samples = 0u;
     for (uint node = deep.head; node != LIST_END; node = push.nodes.at[node].next) {
       ++count;
+      const vec4 color = push.nodes.at[node].color;
+      if (color.a < 0.0) continue;  // cut out
+      ++samples;
       if (push.alphaThreshold > 0.0 && accumulated.a >= push.alphaThreshold) continue;
-      accumulated = blendUnder(accumulated, push.nodes.at[node].color);
+      accumulated = blendUnder(accumulated, color);
     }
     const ivec2 place =
         cornerOf(deep.block.number, push.frame.c.size) + ivec2(pixelOf(deep.bit));
     imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
     atomicAdd(push.counters.c.deepBlended, count);
+    if (deep.block.count > HIGH_LIST && (push.flags & COUNT_SAMPLES) != 0u)
+      atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
     deep.done = 1u;
   } else if (push.round + 1u == push.rounds) {
     atomicAdd(push.counters.c.unfinished, 1u);

@@ -58,6 +58,7 @@ struct DeepPixel {
 };
 
 #define DEEP_GROUP 64u    // invocations of a workgroup of deep_capture.comp
+#define DEEP_RESOLVE_GROUP 8u  // pixels of a workgroup of deep_resolve.comp
 #define DEEP_PART 4096u   // tri-half-blocks that it goes through
 
 struct LucidCounters {
@@ -66,6 +67,7 @@ struct LucidCounters {
   uint groupsDone;             // workgroups of blocks.comp
   uint ready;                  // 1: the lists of all half-blocks are complete
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
+  uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
   uint repairJobs;             // more than the capacity means overflow
   uint deepPixels;             // pixels too deep for repair.comp: more than the capacity means overflow
   uint deepNodes;              // their fragments: more than the capacity means overflow
@@ -75,7 +77,7 @@ struct LucidCounters {
   uint samples;                // fragments: covered, in front of opaque, not cut out
   Dispatch low, high, repair;  // one workgroup for LOW_TEAMS half-blocks, for one, for one job
   Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
-  Dispatch deepResolve;        // x: deep pixels
+  Dispatch deepResolve;        // x: DEEP_RESOLVE_GROUP deep pixels each
 };
 
 #ifndef __cplusplus

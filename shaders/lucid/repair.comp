@@ -60,7 +60,7 @@ void blendPixel(ivec2 corner, uint bit) {
     atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
     if (deep >= push.deepCapacity) return;
     atomicAdd(push.counters.c.deep.x, 1u);
-    atomicAdd(push.counters.c.deepResolve.x, 1u);
+    if (deep % DEEP_RESOLVE_GROUP == 0u) atomicAdd(push.counters.c.deepResolve.x, 1u);
     push.deepPixels.at[deep] = DeepPixel(block, bit, LIST_END, 1u, 0u);
     return;
   }
