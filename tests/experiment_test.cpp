@@ -150,5 +150,37 @@ TEST_F(Experiments, CellIdsTellCellsAndDevicesApart) {
   EXPECT_THAT(cellId(cells[1], a), HasSubstr("boxes-blend-order-sorted-64x32-"));
 }
 
+// What a CPU device cannot do in a reasonable time is made smaller there, and only there.
+TEST_F(Experiments, ACpuDeviceIsGivenLess) {
+  const std::string text = R"(
+scenes = ["boxes", { source = "planes", detail = 0.02 }]
+sizes = ["1920x1080", "640x360"]
+methods = ["blend"]
+[measure]
+time_limit = 10
+[cpu_device]
+sizes = ["64x36"]
+detail = 0.1
+time_limit = 0.5
+[[sweep]]
+scenes = ["teapot"]
+)";
+  const Experiment onGpu = read(text);
+  EXPECT_EQ(onGpu.cells.size(), 6u);
+  EXPECT_EQ(onGpu.cells[0].width, 1920u);
+  EXPECT_EQ(onGpu.cells[0].scene.detail, 1.0f);
+  EXPECT_EQ(onGpu.measure.stop.timeLimitSeconds, 10);
+  const Experiment onCpu = readExperiment(folder_ / "x.toml", true);
+  ASSERT_EQ(onCpu.cells.size(), 3u);
+  for (const CellSpec& cell : onCpu.cells) EXPECT_EQ(cell.height, 36u) << cell.label();
+  EXPECT_EQ(onCpu.cells[0].scene.detail, 0.1f);
+  EXPECT_EQ(onCpu.cells[1].scene.detail, 0.02f) << "less than that already";
+  EXPECT_EQ(onCpu.cells[2].scene.detail, 0.1f) << "of a sweep";
+  EXPECT_EQ(onCpu.measure.stop.timeLimitSeconds, 0.5);
+  read(small);
+  EXPECT_EQ(readExperiment(folder_ / "x.toml", true).cells.size(), read(small).cells.size());
+  EXPECT_THAT(errorOf(std::string(small) + "[cpu_device]\nsise = [\"8x8\"]\n"), HasSubstr("sise"));
+}
+
 }  // namespace
 }  // namespace oitlab::testing

@@ -14,6 +14,7 @@ from pathlib import Path
 import pandas
 
 from .formats import is_number, one_line
+from .memory import own_memory
 
 SCHEMA = 1
 STATUSES = ("ok", "failed", "skipped")
@@ -266,6 +267,7 @@ def flatten(cell: dict) -> dict[str, object]:
         "frame_ms.ci_high": interval[1],
         "frame_ms.count": frame.get("count"),
         "memory_total_bytes": cell.get("memory_bytes", {}).get("total"),
+        **own_memory(cell),
         "image": (cell.get("image") or {}).get("file"),
         "image_hash": cell.get("image_hash"),
         "commit": provenance["commit"],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pandas
 
+from .formats import is_number
+
 PREFIX = "memory.method: "
 
 
@@ -28,3 +30,15 @@ def memory_table(table: pandas.DataFrame) -> pandas.DataFrame | None:
                 "bytes_per_fragment": count / fragments if fragments and fragments > 0 else None,
             })
     return pandas.DataFrame(rows) if rows else None
+
+
+def own_memory(cell: dict) -> dict[str, float | None]:
+    """The method's own buffers, without scene and target: bytes, bytes a pixel, bytes a fragment."""
+    own = cell.get("memory_bytes", {}).get("method")
+    pixels = cell["size"][0] * cell["size"][1]
+    fragments = cell.get("counters", {}).get("fragments")
+    return {
+        "memory_method_bytes": own,
+        "bytes_per_pixel": own / pixels if is_number(own) and pixels else None,
+        "bytes_per_fragment": own / fragments if is_number(own) and fragments else None,
+    }

@@ -33,6 +33,8 @@ def describe(row: pandas.Series) -> dict[str, str]:
         "flip": formats.number(row.get("quality.flip")),
         "fragments": formats.count(row.get("counter.fragments")),
         "memory": formats.mebibytes(row["memory_total_bytes"]),
+        "per_pixel": formats.number(row.get("bytes_per_pixel")),
+        "per_fragment": formats.number(row.get("bytes_per_fragment")),
         "reason": "",
     }
 
@@ -125,6 +127,8 @@ MARKDOWN_COLUMNS = (
     ("FLIP", "flip"),
     ("fragments", "fragments"),
     ("memory MiB", "memory"),
+    ("own bytes a pixel", "per_pixel"),
+    ("own bytes a fragment", "per_fragment"),
 )
 
 

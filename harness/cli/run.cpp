@@ -12,15 +12,22 @@ struct RunOptions {
   Device::Options device;
 };
 
-int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
-           const std::filesystem::path& results, const RunOptions& options) {
+std::vector<CellSpec> cellsOf(const Experiment& experiment, const RunOptions& options) {
+  for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
+  return shardCells(experiment.cells, parseShard(options.shard));
+}
+
+int dryRun(const RunOptions& options, const std::filesystem::path& results) {
   const auto devices = Device::listDevices();
   const int index = options.device.index >= 0 ? options.device.index : Device::bestDevice(devices);
   if (index < 0 || index >= int(devices.size()))
     throw DeviceError("no usable Vulkan device; see `oitlab info`");
+  const DeviceInfo& device = devices[std::size_t(index)];
+  const Experiment experiment = readExperiment(options.file, device.isCpu());
+  const auto cells = cellsOf(experiment, options);
   std::size_t present = 0;
   for (const CellSpec& cell : cells) {
-    const std::string id = cellId(cell, devices[std::size_t(index)]);
+    const std::string id = cellId(cell, device);
     const bool there = std::filesystem::exists(results / "cells" / (id + ".json"));
     present += there;
     fmt::print("{}  {}\n", there ? "there  " : "missing", cell.label());
@@ -28,20 +35,22 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
   const double most =
       experiment.measure.stop.timeLimitSeconds * 1.3 * double(cells.size() - present);
   fmt::print(stderr, "{} cells on {}, {} there already, {} to measure: about {:.0f} s at most\n",
-             cells.size(), devices[std::size_t(index)].name, present, cells.size() - present, most);
+             cells.size(), device.name, present, cells.size() - present, most);
   return exitDone;
 }
 
 int run(const RunOptions& options) {
-  const Experiment experiment = readExperiment(options.file);
+  // Mistakes in the file are told before a device is looked for.
+  Experiment experiment = readExperiment(options.file);
   const std::filesystem::path results = options.results.empty()
                                             ? std::filesystem::path("results") / experiment.name
                                             : std::filesystem::path(options.results);
-  const auto cells = shardCells(experiment.cells, parseShard(options.shard));
-  for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
-  if (options.dryRun) return dryRun(experiment, cells, results, options);
+  parseShard(options.shard);
+  if (options.dryRun) return dryRun(options, results);
 
   const Device device(options.device);
+  if (device.info().isCpu()) experiment = readExperiment(options.file, true);
+  const auto cells = cellsOf(experiment, options);
   fmt::print(stderr, "{}: {} cells on {}\n", experiment.title, cells.size(), device.info().name);
   const RunSummary summary = runExperiment(device, experiment, cells, results);
   fmt::print(stderr,

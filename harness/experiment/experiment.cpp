@@ -8,6 +8,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Size = std::pair<std::uint32_t, std::uint32_t>;
+
 struct SceneChoice {
   SceneSpec spec;
   std::vector<std::string> views;  ///< empty: those of the sweep
@@ -23,7 +25,7 @@ struct MethodChoice {
 struct Axes {
   std::vector<SceneChoice> scenes;
   std::vector<std::string> views{"default"};
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1280, 720}};
+  std::vector<Size> sizes{{1280, 720}};
   std::vector<MethodChoice> methods;
   TargetFormat format = TargetFormat::rgba16f;
 };
@@ -125,6 +127,17 @@ std::vector<MethodChoice> readMethod(TomlTable& owner, const toml::node& node) {
   }
 }
 
+std::vector<Size> readSizes(TomlTable& table) {
+  std::vector<Size> sizes;
+  for (const toml::node* node : table.list("sizes")) {
+    const std::string text = table.string(*node, "a size");
+    const auto size = parseSize(text);
+    if (!size) table.failAt(*node, fmt::format("size '{}': wanted WxH, such as 1280x720", text));
+    sizes.push_back(*size);
+  }
+  return sizes;
+}
+
 void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
               std::vector<std::string>& notes) {
   if (const auto scenes = table.list("scenes"); !scenes.empty()) {
@@ -137,15 +150,7 @@ void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
     axes.views.clear();
     for (const toml::node* node : views) axes.views.push_back(table.string(*node, "a view"));
   }
-  if (const auto sizes = table.list("sizes"); !sizes.empty()) {
-    axes.sizes.clear();
-    for (const toml::node* node : sizes) {
-      const std::string text = table.string(*node, "a size");
-      const auto size = parseSize(text);
-      if (!size) table.failAt(*node, fmt::format("size '{}': wanted WxH, such as 1280x720", text));
-      axes.sizes.push_back(*size);
-    }
-  }
+  if (auto sizes = readSizes(table); !sizes.empty()) axes.sizes = std::move(sizes);
   if (const auto methods = table.list("methods"); !methods.empty()) {
     axes.methods.clear();
     for (const toml::node* node : methods)
@@ -159,6 +164,35 @@ void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
       table.failAt(*node, error.what());
     }
   }
+}
+
+/// [cpu_device]: less of the same, so that a CPU device comes to the end. Its times say nothing
+/// about GPUs anyway; what is shown is that all of it runs, and how the images differ.
+struct CpuDevice {
+  std::vector<Size> sizes;  ///< instead of all others; empty: no change
+  float detail = 1.0f;      ///< of generated scenes, at most
+};
+
+CpuDevice readCpuDevice(TomlTable& root, const toml::node& node, MeasureSettings& settings) {
+  if (!node.is_table()) root.failAt(node, "'cpu_device' must be a table: [cpu_device]");
+  TomlTable table(root.file(), "[cpu_device]", *node.as_table());
+  CpuDevice cpu;
+  cpu.sizes = readSizes(table);
+  cpu.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  double& timeLimit = settings.stop.timeLimitSeconds;
+  timeLimit = table.number("time_limit", timeLimit, 0.01, 3600);
+  table.finish();
+  return cpu;
+}
+
+/// The same with less to do.
+Axes reduced(Axes axes, const CpuDevice& cpu) {
+  if (!cpu.sizes.empty()) axes.sizes = cpu.sizes;
+  for (SceneChoice& scene : axes.scenes)
+    for (const SceneInfo& generated : sceneCatalogue())
+      if (generated.name == scene.spec.source)
+        scene.spec.detail = std::min(scene.spec.detail, cpu.detail);
+  return axes;
 }
 
 void addProduct(const Axes& axes, std::set<std::string>& known, std::vector<CellSpec>& cells) {
@@ -222,7 +256,7 @@ nlohmann::json CellSpec::identity() const {
   return json;
 }
 
-Experiment readExperiment(const fs::path& path) {
+Experiment readExperiment(const fs::path& path, bool onCpu) {
   const std::string file = path.string();
   toml::table root;
   try {
@@ -245,20 +279,30 @@ Experiment readExperiment(const fs::path& path) {
   experiment.measure.seed = std::uint64_t(table.number("seed", 1, 0, 1e15));
   if (const toml::node* node = table.find("measure")) readMeasure(table, *node, experiment.measure);
 
+  CpuDevice cpu;
+  if (const toml::node* node = table.find("cpu_device")) {
+    MeasureSettings measure = experiment.measure;
+    const CpuDevice given = readCpuDevice(table, *node, measure);
+    if (onCpu) {
+      cpu = given;
+      experiment.measure = measure;
+    }
+  }
+
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   Axes axes;
   readAxes(table, folder, axes, experiment.notes);
   const auto sweeps = table.list("sweep");
   table.finish();
   std::set<std::string> known;
-  addProduct(axes, known, experiment.cells);
+  addProduct(reduced(axes, cpu), known, experiment.cells);
   for (const toml::node* node : sweeps) {
     if (!node->is_table()) table.failAt(*node, "'sweep' must be tables: [[sweep]]");
     TomlTable sweep(file, "[[sweep]]", *node->as_table());
     Axes own = axes;
     readAxes(sweep, folder, own, experiment.notes);
     sweep.finish();
-    addProduct(own, known, experiment.cells);
+    addProduct(reduced(own, cpu), known, experiment.cells);
   }
   if (experiment.cells.empty() && experiment.notes.empty())
     fail<InputError>("{}: no cells: it needs 'scenes' and 'methods', at the top or in a [[sweep]]",

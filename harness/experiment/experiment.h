@@ -36,7 +36,8 @@ struct Experiment {
 
 /// Reads and checks an experiment. Scene paths are relative to the file. Throws InputError that
 /// names file, line and key: syntax, unknown keys (with a suggestion), unknown methods or
-/// parameters, values of the wrong type or out of range.
-Experiment readExperiment(const std::filesystem::path& path);
+/// parameters, values of the wrong type or out of range. `onCpu`: with what its [cpu_device] says,
+/// so that a CPU device comes to the end too.
+Experiment readExperiment(const std::filesystem::path& path, bool onCpu = false);
 
 }  // namespace oitlab

@@ -4,6 +4,7 @@
 
 #include "commit.h"
 #include "experiment/describe.h"
+#include "experiment/last_scene.h"
 #include "image/hash.h"
 #include "quality/compare.h"
 #include "util/error.h"
@@ -36,7 +37,8 @@ class Run {
       : device_(device),
         experiment_(experiment),
         results_(std::move(results)),
-        progress_(progress) {}
+        progress_(progress),
+        scene_(device) {}
 
   void measureGroup(const std::vector<CellSpec>& cells);
 
@@ -57,6 +59,7 @@ class Run {
   const Experiment& experiment_;
   fs::path results_;
   Progress& progress_;
+  LastScene scene_;
   const std::string runId_ =
       fmt::format("{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
 };
@@ -161,9 +164,8 @@ std::optional<Image> Run::renderReference(Renderer& renderer, const Camera& came
 
 void Run::measureOn(const std::vector<CellSpec>& cells) {
   const CellSpec& first = cells.front();
-  const Scene scene = loadScene(first.scene);
-  const Camera camera = findView(scene, first.view);
-  const GpuScene gpuScene(device_, scene);
+  const GpuScene& gpuScene = scene_.get(first.scene);
+  const Camera camera = findView(gpuScene.scene(), first.view);
   const Target target(device_, first.width, first.height, first.format);
   Renderer renderer(device_, gpuScene, target);
   const auto reference = renderReference(renderer, camera);

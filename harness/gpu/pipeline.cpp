@@ -100,8 +100,12 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   return pipeline;
 }
 
-void Pipeline::bind(const Commands& commands, vk::DescriptorSet set) const {
+void Pipeline::bind(const Commands& commands) const {
   commands.bindPipeline(bindPoint_, *pipeline_);
+}
+
+void Pipeline::bind(const Commands& commands, vk::DescriptorSet set) const {
+  bind(commands);
   commands.bindDescriptorSets(bindPoint_, layout_, 0, set, nullptr);
 }
 

@@ -51,6 +51,9 @@ class Pipeline {
 
   void bind(const Commands& commands, vk::DescriptorSet set) const;
 
+  /// For shaders that touch no image.
+  void bind(const Commands& commands) const;
+
   /// Pushes a struct of at most Device::pushConstantBytes for the bound pipeline.
   template <typename T>
   void push(const Commands& commands, const T& values) const {

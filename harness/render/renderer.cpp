@@ -126,15 +126,15 @@ void Renderer::recordOpaque(const Frame& frame) const {
   vk::RenderingInfo info({}, target_.area(), 1);
   info.setColorAttachments(color).setPDepthAttachment(&depth);
   commands.beginRendering(info);
-  if (scene_.opaqueCount() > 0) {
-    commands.setViewport(0,
-                         vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
-    commands.setScissor(0, target_.area());
-    opaque_.bind(commands, frame.bindings);
-    opaque_.push(commands, frame.constants);
-    commands.bindIndexBuffer(scene_.opaqueIndices().vk(), 0, vk::IndexType::eUint32);
-    commands.drawIndexed(scene_.opaqueCount() * 3, 1, 0, 0, 0);
-  }
+  // Also without opaque triangles: lavapipe (Mesa 22.3) crashes where a pass that only clears is
+  // followed by a dispatch and then by another pass.
+  commands.setViewport(0,
+                       vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
+  commands.setScissor(0, target_.area());
+  opaque_.bind(commands, frame.bindings);
+  opaque_.push(commands, frame.constants);
+  commands.bindIndexBuffer(scene_.opaqueIndices().vk(), 0, vk::IndexType::eUint32);
+  commands.drawIndexed(scene_.opaqueCount() * 3, 1, 0, 0, 0);
   commands.endRendering();
 
   target_.color().transition(commands, Layout::eGeneral, Layout::eGeneral,

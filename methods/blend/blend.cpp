@@ -1,44 +1,80 @@
 // Hardware alpha blending: what everything else is measured against. Exact only where triangles
 // happen to arrive back to front.
-#include <glm/glm.hpp>
+#include "blend/sort_types.h"
 
-#include <numeric>
-
+#include "gpu/radix_sort.h"
 #include "method/method.h"
 #include "render/sample_counter.h"
 
 namespace oitlab::blend {
 
+/// The triangles of a scene, back to front by the distance of their centroids, sorted on the
+/// device. Equal distances keep the order of submission.
+class CentroidSort {
+ public:
+  /// At least one transparent triangle.
+  CentroidSort(const Device& device, MemoryLedger& memory, const GpuScene& scene)
+      : count_(scene.transparentCount()),
+        keys_(Pipeline::compute(device, "blend/centroid_keys.comp")),
+        gather_(Pipeline::compute(device, "blend/gather_indices.comp")),
+        sort_(device, memory, count_),
+        indices_(device, memory, "sorted indices", 12ull * count_) {}
+
+  /// Leaves the sorted triangles' vertex indices in indices().
+  void record(const Frame& frame) const {
+    using Stage = vk::PipelineStageFlagBits2;
+    const CentroidPush push{.frame = frame.constants,
+                            .submitted = frame.scene.transparentIndices().address(),
+                            .sorted = indices_.address(),
+                            .keys = sort_.keys().address(),
+                            .values = sort_.values().address(),
+                            .eye = frame.camera.eye,
+                            .count = count_};
+    const auto step = [&](const Pipeline& pipeline) {
+      pipeline.bind(frame.commands, frame.bindings);
+      pipeline.push(frame.commands, push);
+      frame.commands.dispatch((count_ + SORT_BLOCK - 1) / SORT_BLOCK, 1, 1);
+    };
+    step(keys_);
+    frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
+    sort_.record(frame.commands);
+    step(gather_);
+    frame.barrier(Stage::eComputeShader, Stage::eIndexInput);
+  }
+
+  const Buffer& indices() const { return indices_; }
+
+ private:
+  std::uint32_t count_;  // triangles
+  Pipeline keys_, gather_;
+  RadixSort sort_;
+  Buffer indices_;
+};
+
 class Blend : public Method {
  public:
   void prepare(const Device& device, const GpuScene& scene, const Target& target,
                const Parameters& parameters) override {
-    sorted_ = parameters.choice("order") == "sorted";
     pipeline_ = Pipeline::graphics(device, {.fragmentShader = "blend/blend.frag",
                                             .colorFormats = {vulkanFormat(target.format())},
                                             .depthFormat = Target::depthFormat,
                                             .blends = {straightOver()}});
-    if (sorted_)
-      indices_ =
-          Buffer(device, memory_, "sorted indices",
-                 std::max<std::uint64_t>(12ull * scene.transparentCount(), 16), BufferKind::upload);
+    if (parameters.choice("order") == "sorted" && scene.transparentCount() > 0)
+      sort_.emplace(device, memory_, scene);
     samples_.emplace(device);
   }
 
   void record(const Frame& frame) override {
-    // On the CPU, and only when the camera moved: its time is in no GPU figure.
-    if (sorted_ && (!sortedFor_ || *sortedFor_ != frame.camera.eye)) {
-      sortBackToFront(frame.scene, frame.camera.eye);
-      sortedFor_ = frame.camera.eye;
-    }
+    // In every frame, though the camera may stand still: a moving one would ask for it.
+    if (sort_) frame.stage("sort", [&] { sort_->record(frame); });
     samples_->reset(frame);
     frame.stage("blend", [&] {
       frame.renderOnTarget([&] {
         samples_->count(frame, [&] {
           pipeline_.bind(frame.commands, frame.bindings);
           pipeline_.push(frame.commands, frame.constants);
-          if (sorted_) {
-            frame.commands.bindIndexBuffer(indices_.vk(), 0, vk::IndexType::eUint32);
+          if (sort_) {
+            frame.commands.bindIndexBuffer(sort_->indices().vk(), 0, vk::IndexType::eUint32);
             frame.commands.drawIndexed(frame.scene.transparentCount() * 3, 1, 0, 0, 0);
           } else {
             frame.drawTransparent();
@@ -51,36 +87,8 @@ class Blend : public Method {
   Status status() override { return {.counters = samples_->counters()}; }
 
  private:
-  void sortBackToFront(const GpuScene& gpuScene, glm::vec3 eye) {
-    const Scene& scene = gpuScene.scene();
-    const std::vector<std::uint32_t>& ids = gpuScene.submission();
-    std::vector<std::pair<float, std::uint32_t>> order;  // squared distance, primitive id
-    order.reserve(ids.size());
-    for (const std::uint32_t id : ids) {
-      const glm::uvec3 t = scene.triangles[id];
-      const glm::vec3 centroid = (scene.vertices[t.x].position + scene.vertices[t.y].position +
-                                  scene.vertices[t.z].position) /
-                                 3.0f;
-      const glm::vec3 offset = centroid - eye;
-      order.emplace_back(glm::dot(offset, offset), id);
-    }
-    std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
-      return a.first != b.first ? a.first > b.first : a.second > b.second;
-    });
-    auto out = indices_.mapped<std::uint32_t>();
-    std::size_t i = 0;
-    for (const auto& [distance, id] : order) {
-      const glm::uvec3 t = scene.triangles[id];
-      out[i++] = t.x;
-      out[i++] = t.y;
-      out[i++] = t.z;
-    }
-  }
-
-  bool sorted_ = false;
   Pipeline pipeline_;
-  Buffer indices_;
-  std::optional<glm::vec3> sortedFor_;
+  std::optional<CentroidSort> sort_;
   std::optional<SampleCounter> samples_;
 };
 
@@ -91,7 +99,7 @@ const RegisterMethod registered({
     .exact = false,
     .parameters = {choice("order", {"submission", "sorted"},
                           "submission: as the scene lists triangles; sorted: back to front by "
-                          "distance of the centroid")},
+                          "distance of the centroid, sorted on the device in every frame")},
     .make = [] { return std::make_unique<Blend>(); },
 });
 

@@ -1,0 +1,242 @@
+// Depth peeling: one geometry pass a layer, from the front (Everitt 2001) or from both ends (Bavoil
+// and Myers 2008). What a pass does is in shaders/depth_peeling/peel.frag.
+//
+// Who says how many passes: as many are recorded as the frame before needed, each is an indirect
+// draw that the pass before it asks for, and a frame that needs more is recorded again (which the
+// measuring does not count). So the CPU never waits for a query between passes, and under a camera
+// that stands still the frame holds exactly the passes that it needs. Where a camera moves to fewer
+// layers, the surplus passes are empty draws.
+#include "depth_peeling/peel_types.h"
+
+#include "method/method.h"
+#include "util/error.h"
+
+namespace oitlab::depth_peeling {
+
+using Stage = vk::PipelineStageFlagBits2;
+
+class DepthPeeling : public Method {
+ public:
+  void prepare(const Device& device, const GpuScene& scene, const Target& target,
+               const Parameters& parameters) override {
+    device_ = &device;
+    pixels_ = std::uint64_t(target.width()) * target.height();
+    triangles_ = scene.transparentCount();
+    dual_ = parameters.choice("mode") == "dual";
+    list_ = dual_ && parameters.choice("back") == "list";
+    wide_ = wantsWideAtomics(parameters.choice("atomics"));
+    layers_ = std::uint32_t(parameters.integer("layers"));
+
+    Defines defines;
+    if (dual_) defines["DUAL"] = "1";
+    if (list_) defines["BACK_LIST"] = "1";
+    if (dual_ && !list_) defines["BACK_BLEND"] = "1";
+    if (wide_) defines["WIDE_ATOMICS"] = "1";
+    const auto geometry = [&](const Defines& with) {
+      return Pipeline::graphics(device, {.fragmentShader = "depth_peeling/peel.frag",
+                                         .defines = with,
+                                         .depthFormat = Target::depthFormat});
+    };
+    peel_ = geometry(defines);
+    Defines resolve = defines;
+    resolve["TARGET_FORMAT"] = formatName(target.format());
+    resolve_ = Pipeline::compute(device, "depth_peeling/resolve.comp", resolve);
+    if (!wide_) {
+      defines["STEP_TIES"] = "1";
+      ties_ = geometry(defines);
+    }
+
+    for (Buffer& keys : keys_)
+      keys = Buffer(device, memory_, "keys", pixels_ * sizeof(Key) * (dual_ ? 2 : 1));
+    front_ = Buffer(device, memory_, "front colour", pixels_ * sizeof(glm::vec4));
+    if (dual_ && !list_)
+      back_ = Buffer(device, memory_, "back colour", pixels_ * sizeof(glm::vec4));
+    if (list_) {
+      heads_ = Buffer(device, memory_, "back list heads", pixels_ * sizeof(std::uint32_t));
+      allocateList(2 * pixels_);
+    }
+    counters_ = Buffer(device, memory_, "counters", sizeof(PeelCounters));
+    readback_ =
+        Buffer(device, memory_, "counters readback", sizeof(PeelCounters), BufferKind::readback);
+    recorded_ = std::min(firstPasses, neededAtMost());
+    allocateDraws();
+  }
+
+  void record(const Frame& frame) override {
+    const vk::DeviceSize drawBytes = (recorded_ + 1) * sizeof(PassDraw);
+    PeelPush push{.frame = frame.constants,
+                  .front = front_.address(),
+                  .back = back_.address(),
+                  .heads = heads_.address(),
+                  .listed = listed_.address(),
+                  .draws = draws_.address(),
+                  .counters = counters_.address(),
+                  .capacity = capacity_};
+    frame.stage("clear", [&] {
+      fillBuffer(frame.commands, keys_[0], ~0u);  // all fragments are behind it
+      fillBuffer(frame.commands, keys_[1], 0);
+      fillBuffer(frame.commands, front_, 0);
+      if (back_) fillBuffer(frame.commands, back_, 0);
+      if (heads_) fillBuffer(frame.commands, heads_, LIST_END);
+      fillBuffer(frame.commands, counters_, 0);
+      frame.commands.copyBuffer(drawTemplate_.vk(), draws_.vk(), vk::BufferCopy(0, 0, drawBytes));
+    });
+    frame.stage("peel", [&] {
+      for (push.pass = 0; push.pass < recorded_; ++push.pass) recordPass(frame, push);
+      frame.barrier(Stage::eFragmentShader, Stage::eComputeShader | Stage::eTransfer);
+    });
+    frame.stage("resolve", [&] {
+      resolve_.bind(frame.commands, frame.bindings);
+      resolve_.push(frame.commands, push);
+      frame.dispatchPixels();
+      frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
+                                vk::BufferCopy(0, 0, sizeof(PeelCounters)));
+      frame.commands.copyBuffer(draws_.vk(), drawsReadback_.vk(), vk::BufferCopy(0, 0, drawBytes));
+      frame.barrier(Stage::eTransfer, Stage::eHost);
+    });
+    instrumented_ = frame.instrumented;
+  }
+
+  Status status() override {
+    const PeelCounters counters = readback_.mapped<PeelCounters>()[0];
+    const auto draws = drawsReadback_.mapped<PassDraw>();
+    std::uint32_t asked = 0;  // passes, each by the one before it
+    while (asked <= recorded_ && draws[asked].instanceCount > 0) ++asked;
+    if (asked > recorded_) {
+      if (recorded_ == maxPasses)
+        fail<DeviceError>(
+            "depth_peeling: some pixel needs more than {} passes; take fewer layers, or a method "
+            "that sorts",
+            maxPasses);
+      recorded_ = std::min({4 * recorded_, neededAtMost(), maxPasses});
+      allocateDraws();
+      return {.recordAgain = true};
+    }
+    if (list_ && counters.back > capacity_) {
+      // A little more than was counted, so that a slowly turning camera does not grow it every
+      // frame.
+      allocateList(counters.back + counters.back / 16ull);
+      return {.recordAgain = true};
+    }
+    recorded_ = asked;  // of the next frame, until it asks for more
+
+    const std::uint32_t blending = asked - 1;
+    counted_["layers"] = blending + counters.lastBackPass;
+    counted_["passes"] = wide_ ? asked : asked + blending;
+    if (instrumented_) {
+      // Nothing is lost in silence, not even to a device that works depths out anew in each pass.
+      if (counters.blended + counters.missed != counters.fragments)
+        fail<DeviceError>(
+            "depth_peeling: of {} fragments {} were blended and {} left over: {} does not give a "
+            "fragment the same depth in every pass",
+            counters.fragments, counters.blended, counters.missed, device_->info().name);
+      counted_["fragments"] = counters.fragments;
+      counted_["missed_fragments"] = counters.missed;
+    }
+    return {.counters = counted_};
+  }
+
+ private:
+  /// Below the 65,535 iterations at which llvmpipe ends a loop: resolve.comp has one a pass.
+  static constexpr std::uint32_t maxPasses = 1u << 15;
+  /// Of the first frame. Four times as many with each new recording come to maxPasses with one to
+  /// spare for the list, of the 8 that a renderer allows.
+  static constexpr std::uint32_t firstPasses = 16;
+
+  bool wantsWideAtomics(const std::string& choice) const {
+    const bool has = device_->info().has("shaderBufferInt64Atomics");
+    if (choice == "int64" && !has)
+      fail<DeviceError>("depth_peeling: {} lacks shaderBufferInt64Atomics; use atomics=int32",
+                        device_->info().name);
+    return has && choice != "int32";
+  }
+
+  /// The passes of a limited number of layers: the first one only finds.
+  std::uint32_t neededAtMost() const {
+    if (layers_ == 0) return std::numeric_limits<std::uint32_t>::max();
+    return 1 + (dual_ ? (layers_ + 1) / 2 : layers_);
+  }
+
+  void recordPass(const Frame& frame, PeelPush& push) const {
+    const bool last = push.pass + 1 == neededAtMost();  // not of the recorded: of those wanted
+    push.does = last ? 0 : PASS_FINDS;
+    if (dual_ && !(last && layers_ % 2 == 1)) push.does |= PASS_HAS_BACK;
+    if (frame.instrumented) push.does |= PASS_COUNTS | (push.pass == 0 ? PASS_COUNTS_ALL : 0);
+    push.peeled = keys_[push.pass % 3].address();
+    push.next = keys_[(push.pass + 1) % 3].address();
+    frame.barrier(Stage::eFragmentShader | Stage::eTransfer,
+                  Stage::eFragmentShader | Stage::eTransfer | Stage::eDrawIndirect);
+    // For the pass after this one, while this one draws: a third buffer saves a wait.
+    fillBuffer(frame.commands, keys_[(push.pass + 2) % 3], 0);
+    draw(frame, peel_, push, push.pass);
+    if (wide_ || last) return;
+    frame.barrier(Stage::eFragmentShader, Stage::eFragmentShader | Stage::eDrawIndirect);
+    draw(frame, ties_, push, push.pass + 1);
+  }
+
+  /// Draws all transparent triangles, if pass `asked` was asked for.
+  void draw(const Frame& frame, const Pipeline& pipeline, const PeelPush& push,
+            std::uint32_t asked) const {
+    frame.renderDepthTested({}, [&] {
+      pipeline.bind(frame.commands, frame.bindings);
+      pipeline.push(frame.commands, push);
+      frame.commands.bindIndexBuffer(frame.scene.transparentIndices().vk(), 0,
+                                     vk::IndexType::eUint32);
+      frame.commands.drawIndexedIndirect(draws_.vk(), asked * sizeof(PassDraw), 1,
+                                         sizeof(PassDraw));
+    });
+  }
+
+  /// One command for each pass that is recorded, and one for the pass that the last may ask for.
+  void allocateDraws() {
+    const std::uint64_t bytes = (recorded_ + 1) * sizeof(PassDraw);
+    draws_ = Buffer(*device_, memory_, "pass draws", bytes);
+    drawsReadback_ = Buffer(*device_, memory_, "pass draws readback", bytes, BufferKind::readback);
+    std::vector<PassDraw> commands(recorded_ + 1, {.indexCount = 3 * triangles_});
+    commands.front().instanceCount = 1;
+    drawTemplate_ = uploadBuffer(*device_, memory_, "pass draws template", commands);
+  }
+
+  void allocateList(std::uint64_t nodes) {
+    if (nodes >= LIST_END)
+      fail<DeviceError>(
+          "depth_peeling: {} fragments are more than the 2^32 - 1 that its lists can name", nodes);
+    listed_ = Buffer();  // give the old one back first: both may not fit
+    listed_ = Buffer(*device_, memory_, "back list", nodes * sizeof(BackFragment));
+    capacity_ = std::uint32_t(nodes);
+  }
+
+  const Device* device_ = nullptr;
+  std::uint64_t pixels_ = 0;
+  std::uint32_t triangles_ = 0;
+  std::uint32_t layers_ = 0;  // 0: all
+  bool dual_ = false, list_ = false, wide_ = false, instrumented_ = false;
+  std::uint32_t recorded_ = 0;  // passes
+  std::uint32_t capacity_ = 0;  // nodes of the back list
+  Pipeline peel_, ties_, resolve_;
+  std::array<Buffer, 3> keys_;  // in turn: blended, found, cleared
+  Buffer front_, back_, heads_, listed_, counters_, readback_;
+  Buffer draws_, drawTemplate_, drawsReadback_;
+  std::map<std::string, std::uint64_t> counted_;
+};
+
+const RegisterMethod registered({
+    .name = "depth_peeling",
+    .summary = "one geometry pass a layer, from the front or from both ends; exact with all layers",
+    .source = "Everitt 2001, Interactive Order-Independent Transparency; Bavoil and Myers 2008, "
+              "Order Independent Transparency with Dual Depth Peeling",
+    .exact = true,
+    .parameters =
+        {integer("layers", 0, 0, 1024, "blended of each pixel, at most; 0: all", "layers"),
+         choice("mode", {"front_to_back", "dual"},
+                "front_to_back: a layer a pass; dual: one from each end"),
+         choice("back", {"list", "blend"},
+                "dual: fragments from the back are listed, and blended last, in the exact order; "
+                "or blended at once as published, which rounds otherwise"),
+         choice("atomics", {"auto", "int64", "int32"},
+                "on keys of depth and primitive id; int32 takes a second pass a layer for the id")},
+    .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
+    .make = [] { return std::make_unique<DepthPeeling>(); },
+});
+
+}  // namespace oitlab::depth_peeling
