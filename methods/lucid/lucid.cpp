@@ -25,6 +25,7 @@ class Lucid : public Method {
   void prepare(const Device& device, const GpuScene& scene, const Target& target,
                const Parameters& parameters) override {
     device_ = &device;
+    opaque_ = scene.opaqueCount() > 0;
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
@@ -52,9 +53,14 @@ class Lucid : public Method {
     frame.stage("blocks", [&] {
       fillBuffer(frame.commands, counters_, 0);
       frame.barrier(Stage::eTransfer, compute);
-      blockLists_.bind(frame.commands, frame.bindings);
-      blockLists_.push(frame.commands, push);
-      frame.commands.dispatch(std::min(frontEnd_->bins(), MAX_GROUPS), 1, 1);
+      // Full bins first: what takes longest must not begin last.
+      for (const auto& [pipeline, offset] :
+           {std::pair(&highBlocks_, offsetof(RasterCounters, high)),
+            std::pair(&lowBlocks_, offsetof(RasterCounters, low))}) {
+        pipeline->bind(frame.commands, frame.bindings);
+        pipeline->push(frame.commands, push);
+        frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
+      }
       frame.barrier(compute, compute | Stage::eDrawIndirect);
     });
     // The two write different half-blocks, so that no barrier parts them.
@@ -123,6 +129,7 @@ class Lucid : public Method {
     const std::uint32_t lanes = device_->info().subgroupSize;
     const Defines common = {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
                             {"TARGET_FORMAT", format},
+                            {"HAS_OPAQUE", opaque_ ? "1" : "0"},
                             {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"},
                             {"DEPTH_FILTER", std::to_string(parameters_.integer("depth_filter"))}};
     auto raster = [&](bool high) {
@@ -132,16 +139,19 @@ class Lucid : public Method {
       defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
     };
-    // A workgroup a bin: 8 subgroups where these are short, as few hands are at work at a time
-    // then.
-    blockLists_ = Pipeline::compute(*device_, "lucid/blocks.comp", {}, {lanes < 32 ? 64u : 256u});
+    // A workgroup a bin. On a CPU a large one is no faster.
+    const bool gpu = lanes >= 32;
+    lowBlocks_ =
+        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "0"}}, {gpu ? 256u : 64u});
+    highBlocks_ =
+        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "1"}},
+                          {gpu ? std::min(1024u, device_->info().maxWorkgroupInvocations) : 64u});
     lowRaster_ = raster(false);
     highRaster_ = raster(true);
-    repair_ = Pipeline::compute(
-        *device_, "lucid/repair.comp",
-        {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")}, {"TARGET_FORMAT", format}}, {}, lanes);
+    repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
     deepCapture_ =
-        Pipeline::compute(*device_, "lucid/deep_capture.comp", {{"TARGET_FORMAT", format}});
+        Pipeline::compute(*device_, "lucid/deep_capture.comp",
+                          {{"TARGET_FORMAT", format}, {"HAS_OPAQUE", common.at("HAS_OPAQUE")}});
     deepResolve_ =
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
   }
@@ -178,6 +188,7 @@ class Lucid : public Method {
     const auto compute = Stage::eComputeShader;
     RepairPush push{.frame = lucid.frame,
                     .triangles = lucid.triangles,
+                    .irregular = lucid.irregular,
                     .shading = lucid.shading,
                     .attributes = lucid.attributes,
                     .list = lucid.list,
@@ -247,11 +258,12 @@ class Lucid : public Method {
   }
 
   const Device* device_ = nullptr;
+  bool opaque_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
   std::uint32_t deepRounds_ = 1;
-  Pipeline blockLists_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
+  Pipeline lowBlocks_, highBlocks_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
   Buffer list_, keys_, blocks_, repairs_, counters_, readback_, deepPixels_, nodes_;
 };
 

@@ -10,7 +10,6 @@
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { LucidPush push; };
 
-#include "common/normal.glsl"
 #include "lucid/depth_filter.glsl"
 #include "lucid/sort.glsl"
 
@@ -19,11 +18,8 @@ layout(push_constant, scalar) uniform Push { LucidPush push; };
 shared uint masks[TEAMS * SUBGROUP_SIZE];      // coverage by the prepared triangles
 shared uint ends[TEAMS * SUBGROUP_SIZE];       // running sum of their fragments
 shared vec4 sampleColors[TEAMS * OWNERS];
-shared uvec2 sampleKeys[TEAMS * OWNERS];       // depth, id
+shared uvec2 sampleKeys[TEAMS * OWNERS];       // 1 / w, id
 shared uint samplesOf[TEAMS * OWNERS];            // bit i: sample i falls on this pixel
-
-uint listBegin;
-uint idOfKey(uvec2 key) { return push.triangles.at[push.list.at[listBegin + key.y].triangle].id; }
 
 uint nthBit(uint mask, uint n) {
   uint place = 0u;
@@ -46,12 +42,13 @@ void addJob(HalfBlock block, uint pixels) {
 
 // Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
 // pixels whose order went wrong.
-uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
+uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
+           uint placeMask) {
   const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
   const uint firstKey = team * LIST, firstPrepared = team * SUBGROUP_SIZE, firstSample = team * OWNERS;
   const vec2 pixel = vec2(pixelOf(bit));
   const ivec2 place = corner + ivec2(pixel);
-  const float opaque = texelFetch(opaqueDepth, min(place, ivec2(push.frame.c.size) - 1), 0).r;
+  const float opaque = opaqueDepthAt(place);
   Pixel p;
   clearPixel(p);
   if (owner) samplesOf[firstSample + lane] = 0u;
@@ -61,9 +58,10 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
     const uint batch = min(SUBGROUP_SIZE, block.count - first);
     uint mask = 0u;
     if (lane < batch) {
-      const TriHalfBlock item = push.list.at[block.first + keys[firstKey + first + lane].y];
+      const uint inList = keys[firstKey + first + lane] & placeMask;
+      const TriHalfBlock item = push.list.at[block.first + inList];
       mask = item.mask & owned;
-      if (mask != 0u) prepare(firstPrepared + lane, item, corner);
+      if (mask != 0u) prepare(firstPrepared + lane, item.triangle, corner);
     }
     const uint end = subgroupInclusiveAdd(bitCount(mask));
     const uint fragments = subgroupAdd(bitCount(mask));
@@ -80,7 +78,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
         const uint at = firstPrepared + k;
         if (!owner || (masks[at] & (1u << bit)) == 0u) continue;
         const float invW = preparedInvW(at, pixel);
-        if (depthOf(invW) < opaque) continue;
+        if (isHidden(invW, opaque)) continue;
         Fragment f;
         if (!shadeFragment(at, pixel, invW, f)) continue;
         pushFragment(p, f);
@@ -101,7 +99,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
           Fragment f;
           if (shadeFragment(at, hitPixel, preparedInvW(at, hitPixel), f)) {
             sampleColors[firstSample + lane] = f.color;
-            sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.depth), f.id);
+            sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.invW), f.id);
             atomicOr(samplesOf[firstSample + hit % OWNERS], 1u << lane);
           }
         }
@@ -112,7 +110,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
           const uint i = firstSample + findLSB(arrived);
           arrived &= arrived - 1u;
           const Fragment f = Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
-          if (f.depth < opaque) continue;
+          if (isHidden(f.invW, opaque)) continue;
           pushFragment(p, f);
           ++samples;
         }
@@ -142,14 +140,23 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner) {
 void blendHalfBlock(HalfBlock block) {
   const uint lane = gl_SubgroupInvocationID, firstKey = gl_SubgroupID * LIST;
   const ivec2 corner = cornerOf(block.number, push.frame.c.size);
-  listBegin = block.first;
+  // Depths are sorted within their range, so that few bits tell them apart.
+  float low = NEAREST, high = 0.0;
+  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
+    const float depth = uintBitsToFloat(push.keys.at[block.first + i]);
+    low = min(low, depth);
+    high = max(high, depth);
+  }
+  low = subgroupMin(low);
+  high = subgroupMax(high);
+  const uint bits = findMSB(block.count) + 1;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
-    keys[firstKey + i] = uvec2(push.keys.at[block.first + i], i);
+    keys[firstKey + i] = packKey(uintBitsToFloat(push.keys.at[block.first + i]), low, high, i, bits);
   sortKeys(firstKey, block.count);
   uint invalid = 0u;
   for (uint begin = 0u; begin < 32u; begin += OWNERS) {
     const uint owned = (0xffffffffu >> (32u - OWNERS)) << begin;
-    invalid |= sweep(block, corner, owned, min(begin + lane, 31u), lane < OWNERS);
+    invalid |= sweep(block, corner, owned, min(begin + lane, 31u), lane < OWNERS, (1u << bits) - 1u);
     subgroupBarrier();
   }
   invalid = subgroupOr(invalid);

@@ -24,7 +24,7 @@ uint sortKey(ShadeTriangle t, ivec2 corner, uint mask) {
                              4 * bitCount(mask & 0xf0f0f0f0u),
                          bitCount(mask & 0xff00ff00u) + 2 * bitCount(mask & 0xffff0000u));
   const vec2 d = vec2(corner) + 0.5 + sums / float(bitCount(mask)) - t.anchor;
-  const float invW = t.invW.x + t.invW.y * d.x + t.invW.z * d.y;
+  const float invW = t.invW + t.invWSlope.x * d.x + t.invWSlope.y * d.y;
   return floatBitsToUint(max(invW, 0.0));
 }
 
@@ -67,7 +67,7 @@ void walk(bool write, Bin bin, ivec2 region) {
     const RasterTriangle t = push.triangles.at[slot];
     if (t.flags == 0u) continue;
     const bool irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
-    const ivec4 box = snappedBox(t.v[0], t.v[1], t.v[2]);
+    const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
     const int firstRow = irregular ? 0 : max(box.y - region.y, 0);
     const int lastRow = min(irregular ? 31 : box.w - region.y, min(rowsLeft, 32) - 1);
     if (firstRow > lastRow) continue;
@@ -147,26 +147,28 @@ void makeLists(uint number) {
 }
 
 void main() {
-  const bool listed = push.rasterCounters.c.ready != 0u;  // else: the bins hold nothing yet
-  const uint lows = listed ? push.rasterCounters.c.lowBins : 0u;
-  const uint highs = listed ? push.rasterCounters.c.highBins : 0u;
+  // HIGH 1: bins of many triangles, by large workgroups; HIGH 0: the others.
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
   const uint rows = (push.frame.c.size.y + BIN_SIZE - 1u) / BIN_SIZE;
-  // Full bins first: what takes longest must not begin last.
-  for (uint i = gl_WorkGroupID.x; i < lows + highs; i += gl_NumWorkGroups.x) {
-    makeLists(i < highs ? push.binLists.at[columns * rows - 1u - i] : push.binLists.at[i - highs]);
+#if HIGH
+  const uint bins = push.rasterCounters.c.highBins;
+#else
+  const uint bins = push.rasterCounters.c.lowBins;
+#endif
+  for (uint i = gl_WorkGroupID.x; i < bins; i += gl_NumWorkGroups.x) {
+    makeLists(push.binLists.at[HIGH == 1 ? columns * rows - 1u - i : i]);
     barrier();  // the shared counts are used anew
   }
   if (gl_LocalInvocationIndex != 0u) return;
   memoryBarrierBuffer();
-  if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < gl_NumWorkGroups.x) return;
-  // The last workgroup to end knows all counts.
+  const uint groups = push.rasterCounters.c.low.x + push.rasterCounters.c.high.x;
+  if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < groups) return;
+  // The last workgroup to end, of either kind, knows all counts.
   const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
   const uint cap = push.flags >> FLAG_BITS;
   const uint most = cap == 0u ? MAX_GROUPS : cap;
   const uint lowGroups = (atomicAdd(push.counters.c.shortLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
   const uint highGroups = atomicAdd(push.counters.c.longLists, 0u);
-  push.counters.c.ready = uint(ready);
   push.counters.c.low = Dispatch(ready ? min(lowGroups, most) : 0u, 1u, 1u);
   push.counters.c.high = Dispatch(ready ? min(highGroups, most) : 0u, 1u, 1u);
   push.counters.c.repair = Dispatch(0u, 1u, 1u);

@@ -9,7 +9,6 @@
 layout(local_size_x = DEEP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
-#include "common/normal.glsl"
 #include "lucid/fragment.glsl"
 
 void main() {
@@ -18,22 +17,22 @@ void main() {
   const uint bit = push.deepPixels.at[number].bit;
   const ivec2 corner = cornerOf(block.number, push.frame.c.size);
   const vec2 pixel = vec2(pixelOf(bit));
-  const float opaque = texelFetch(opaqueDepth, corner + ivec2(pixel), 0).r;
+  const float opaque = opaqueDepthAt(corner + ivec2(pixel));
   const uint begin = gl_WorkGroupID.y * DEEP_PART;
   const uint end = min(begin + DEEP_PART, block.count);
   for (uint i = begin + self; i < end; i += DEEP_GROUP) {
     const TriHalfBlock item = push.list.at[block.first + i];
     if ((item.mask & (1u << bit)) == 0u) continue;
-    prepare(self, item, corner);
+    prepare(self, item.triangle, corner);
     const float invW = preparedInvW(self, pixel);
-    if (depthOf(invW) < opaque) continue;
+    if (isHidden(invW, opaque)) continue;
     const uint index = atomicAdd(push.counters.c.deepCaptured, 1u);
     if (index >= push.nodeCapacity) continue;
     Fragment f;
     const bool kept = shadeFragment(self, pixel, invW, f);
     Node node;
     node.color = kept ? f.color : vec4(-1.0);  // cut out: counted, not blended
-    node.depth = depthOf(invW);
+    node.depth = invW;
     node.id = push.triangles.at[item.triangle].id;
     node.next = atomicExchange(push.deepPixels.at[number].head, index);
     push.nodes.at[index] = node;

@@ -8,7 +8,7 @@
 
 struct Pixel {
   vec4 accumulated;  // premultiplied
-  float lastDepth;   // of the fragment blended last
+  float lastInvW;    // of the fragment blended last
   uint lastId;
   bool invalid;      // one came after one that it is in front of
   Fragment queue[DEPTH_FILTER];  // front to back
@@ -16,12 +16,12 @@ struct Pixel {
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
 
-bool fragmentBefore(Fragment a, Fragment b) { return isInFront(a.depth, a.id, b.depth, b.id); }
+bool fragmentBefore(Fragment a, Fragment b) { return isInFront(a.invW, a.id, b.invW, b.id); }
 
 // An empty place is a fragment in front of all, of no weight: it leaves first and changes nothing.
 void clearPixel(out Pixel p) {
   p.accumulated = vec4(0.0);
-  p.lastDepth = NEAREST;
+  p.lastInvW = NEAREST;
   p.lastId = 0u;
   p.invalid = false;
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
@@ -32,9 +32,9 @@ bool isFull(Pixel p) { return push.alphaThreshold > 0.0 && p.accumulated.a >= pu
 // Order is right if and only if it never decreases: no wrong pixel goes unnoticed. Fragments behind
 // the alpha threshold are not blended, but their order is still watched.
 void blendFragment(inout Pixel p, Fragment f) {
-  p.invalid = p.invalid || isInFront(f.depth, f.id, p.lastDepth, p.lastId);
+  p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   if (isFull(p)) return;
-  p.lastDepth = f.depth;
+  p.lastInvW = f.invW;
   p.lastId = f.id;
   p.accumulated = blendUnder(p.accumulated, f.color);
 }

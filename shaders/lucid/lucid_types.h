@@ -20,7 +20,7 @@ using namespace oitlab::raster;
 #define STRIPS 8u        // rows of half-blocks in a bin
 
 #define LOW_TEAMS 4u      // half-blocks that a workgroup of low_raster works on side by side
-#define LOW_LIST 256u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
+#define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
 #define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
 
@@ -65,7 +65,6 @@ struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
   uint shortLists, longLists;  // half-blocks by length of list
   uint groupsDone;             // workgroups of blocks.comp
-  uint ready;                  // 1: the lists of all half-blocks are complete
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
   uint repairJobs;             // more than the capacity means overflow
@@ -81,7 +80,7 @@ struct LucidCounters {
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TriHalfBlockBuffer { TriHalfBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { TriHalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };
@@ -112,6 +111,7 @@ struct LucidPush {
 struct RepairPush {
   ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(RasterTriangleBuffer) triangles;
+  ADDRESS_OF(IrregularBuffer) irregular;
   ADDRESS_OF(ShadeTriangleBuffer) shading;
   ADDRESS_OF(AttributeBuffer) attributes;
   ADDRESS_OF(TriHalfBlockBuffer) list;

@@ -11,10 +11,9 @@
 layout(local_size_x = SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
-#include "common/normal.glsl"
 #include "common/order.glsl"
 #include "lucid/fragment.glsl"
-#include "lucid/sort.glsl"
+#include "lucid/exact_sort.glsl"
 
 shared uint found, walked;
 shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fragment out
@@ -22,7 +21,7 @@ shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fra
 HalfBlock block;
 uint idOfKey(uvec2 key) { return push.triangles.at[push.list.at[block.first + key.y].triangle].id; }
 
-// Depth at a pixel, the same bits as in blend.comp.
+// 1 / w at a pixel, the same bits as in blend.comp.
 float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
   const ShadeTriangle s = push.shading.at[triangle];
   return boundedInvW(originInvW(s, corner), s, pixel);
@@ -32,7 +31,7 @@ void blendPixel(ivec2 corner, uint bit) {
   const uint lane = gl_SubgroupInvocationID;
   const uvec2 pixel = pixelOf(bit);
   const ivec2 place = corner + ivec2(pixel);
-  const float opaque = texelFetch(opaqueDepth, place, 0).r;
+  const float opaque = opaqueDepthAt(place);
   if (lane == 0u) found = walked = 0u;
   subgroupBarrier();
   uint steps = 0u;
@@ -41,9 +40,9 @@ void blendPixel(ivec2 corner, uint bit) {
     const TriHalfBlock item = push.list.at[block.first + i];
     if ((item.mask & (1u << bit)) == 0u) continue;
     const float invW = invWAt(item.triangle, corner, vec2(pixel));
-    if (depthOf(invW) < opaque) continue;
+    if (isHidden(invW, opaque)) continue;
     const uint place = atomicAdd(found, 1u);
-    if (place < LIST) keys[place] = uvec2(floatBitsToUint(depthOf(invW)), i);
+    if (place < LIST) keys[place] = uvec2(floatBitsToUint(invW), i);
   }
   atomicAdd(walked, steps);
   subgroupBarrier();
@@ -70,7 +69,7 @@ void blendPixel(ivec2 corner, uint bit) {
   for (uint first = 0u; first < count; first += SUBGROUP_SIZE) {
     if (first + lane < count) {
       const TriHalfBlock item = push.list.at[block.first + keys[first + lane].y];
-      prepare(lane, item, corner);
+      prepare(lane, item.triangle, corner);
       Fragment f;
       const bool kept = shadeFragment(lane, vec2(pixel), preparedInvW(lane, vec2(pixel)), f);
       colors[lane] = kept ? f.color : vec4(-1.0);

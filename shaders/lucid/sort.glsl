@@ -1,30 +1,33 @@
-// Sorting by depth within a subgroup, in shared memory. The including shader defines SUBGROUP_SIZE,
-// TEAMS and LIST, declares `push`, and says what breaks a tie: idOfKey().
+// Sorting within a subgroup, in shared memory. The including shader defines SUBGROUP_SIZE, TEAMS and
+// LIST.
 #ifndef OITLAB_LUCID_SORT_GLSL
 #define OITLAB_LUCID_SORT_GLSL
 
-const uint noKey = 0xffffffffu;  // in y: padding, behind everything
+// Behind everything.
+const uint padding = 0xffffffffu;
 
-// x: depth, larger is nearer; y: index.
-shared uvec2 keys[TEAMS * LIST];
+shared uint keys[TEAMS * LIST];
 
-uint idOfKey(uvec2 key);
-
-bool keyBefore(uvec2 a, uvec2 b) {
-  if (a.x != b.x) return a.x > b.x;
-  if (a.y == noKey || b.y == noKey) return b.y == noKey && a.y != noKey;
-  return idOfKey(a) < idOfKey(b);
+// Keys of fixed width: the depth within the list's range in the high bits, front first, and the place
+// in the list in the low ones, as the paper packs them (section 2, phase 2). Equal depths come out in
+// any order: the depth filter puts these right, or the repair.
+//
+// bits: that the places need. depths: larger is nearer, within [low, high].
+uint packKey(float depth, float low, float high, uint place, uint bits) {
+  const float behind = high > low ? clamp((high - depth) / (high - low), 0.0, 1.0) : 0.0;
+  const uint steps = (1u << (31u - bits)) - 1u;  // 31, not 32: below `padding` in any case
+  return min(uint(behind * float(steps)), steps) << bits | place;
 }
 
-// Sorts keys[first, first + count), front to back; count <= LIST. All lanes of the subgroup take part.
+// Sorts keys[first, first + count), ascending; count <= LIST. All lanes of the subgroup take part.
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
   subgroupBarrier();
   if (count <= SUBGROUP_SIZE) {
     // Few: each key counts those before it.
-    const uvec2 own = lane < count ? keys[first + lane] : uvec2(0u, noKey);
+    const uint own = lane < count ? keys[first + lane] : padding;
     uint rank = 0u;
-    for (uint i = 0u; i < count; ++i) rank += uint(keyBefore(keys[first + i], own));
+    for (uint i = 0u; i < count; ++i) rank += uint(keys[first + i] < own);
     subgroupBarrier();
     if (lane < count) keys[first + rank] = own;
     subgroupBarrier();
@@ -33,18 +36,16 @@ void sortKeys(uint first, uint count) {
   // Bitonic (Batcher 1968), padded to a power of two.
   uint padded = 2u * SUBGROUP_SIZE;
   while (padded < count) padded *= 2u;
-  for (uint i = count + lane; i < padded; i += SUBGROUP_SIZE) keys[first + i] = uvec2(0u, noKey);
+  for (uint i = count + lane; i < padded; i += SUBGROUP_SIZE) keys[first + i] = padding;
   for (uint size = 2u; size <= padded; size *= 2u) {
     for (uint step = size / 2u; step > 0u; step /= 2u) {
       subgroupBarrier();
       for (uint i = lane; i < padded / 2u; i += SUBGROUP_SIZE) {
-        const uint low = 2u * i - (i & (step - 1u)), high = low + step;
-        const uvec2 a = keys[first + low], b = keys[first + high];
-        const bool upwards = (low & size) == 0u;
-        if (upwards ? keyBefore(b, a) : keyBefore(a, b)) {
-          keys[first + low] = b;
-          keys[first + high] = a;
-        }
+        const uint low = first + 2u * i - (i & (step - 1u)), high = low + step;
+        const uint a = keys[low], b = keys[high];
+        const bool upwards = ((2u * i - (i & (step - 1u))) & size) == 0u;
+        keys[low] = upwards ? min(a, b) : max(a, b);
+        keys[high] = upwards ? max(a, b) : min(a, b);
       }
     }
   }

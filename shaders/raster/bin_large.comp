@@ -26,9 +26,9 @@ void main() {
       const ivec2 region = ivec2(place * BIN_SIZE);
       // Trivial reject (Abrash 2009): the bin's corner that lies deepest inside is outside.
       if ((t.flags & TRIANGLE_IRREGULAR) == 0u &&
-          (rejectsBin(makeEdge(t.v[0], t.v[1], region)) ||
-           rejectsBin(makeEdge(t.v[1], t.v[2], region)) ||
-           rejectsBin(makeEdge(t.v[2], t.v[0], region))))
+          (rejectsBin(makeEdge(t.v01.xy, t.v01.zw, region)) ||
+           rejectsBin(makeEdge(t.v01.zw, t.v2, region)) ||
+           rejectsBin(makeEdge(t.v2, t.v01.xy, region))))
         continue;
       const uint bin = place.y * columns + place.x;
 #if COUNT

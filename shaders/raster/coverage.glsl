@@ -65,9 +65,9 @@ struct RegionEdges {
 
 RegionEdges regionEdges(RasterTriangle t, ivec2 region) {
   RegionEdges r;
-  r.edge[0] = makeEdge(t.v[0], t.v[1], region);
-  r.edge[1] = makeEdge(t.v[1], t.v[2], region);
-  r.edge[2] = makeEdge(t.v[2], t.v[0], region);
+  r.edge[0] = makeEdge(t.v01.xy, t.v01.zw, region);
+  r.edge[1] = makeEdge(t.v01.zw, t.v2, region);
+  r.edge[2] = makeEdge(t.v2, t.v01.xy, region);
   r.inverseA = 1.0 / vec3(r.edge[0].a, r.edge[1].a, r.edge[2].a);
   return r;
 }
@@ -89,12 +89,13 @@ bool comesBefore(vec3 a, vec3 b) {
 
 uint irregularRow(RasterTriangle t, IrregularTriangle source, ShadeTriangle planes, float near,
                   ivec2 region, int j) {
+  const ivec2 v[3] = ivec2[3](t.v01.xy, t.v01.zw, t.v2);
   uint row = 0xffffffffu;
   for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
     const uint both = (1u << k | 1u << next) << TRIANGLE_SNAPPED_SHIFT;
     if ((t.flags & both) == both) {
-      const Edge e = makeEdge(t.v[k], t.v[next], region);
+      const Edge e = makeEdge(v[k], v[next], region);
       int low = 0, high = 31;
       narrow(e, 1.0 / float(e.a), j, low, high);
       row &= bitsBetween(low, high);
@@ -112,7 +113,7 @@ uint irregularRow(RasterTriangle t, IrregularTriangle source, ShadeTriangle plan
   const float dy = float(region.y + j) + 0.5 - planes.anchor.y;
   for (int i = 0; i < 32; ++i) {
     const float dx = float(region.x + i) + 0.5 - planes.anchor.x;
-    const float invW = planes.invW.x + planes.invW.y * dx + planes.invW.z * dy;
+    const float invW = planes.invW + planes.invWSlope.x * dx + planes.invWSlope.y * dy;
     if (!(invW > 0.0 && invW * near <= 1.0)) row &= ~(1u << i);
   }
   return row;

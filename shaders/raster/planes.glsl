@@ -30,7 +30,8 @@ vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float area) {
   return g;
 }
 
-// Of three corners that snap. `corners`: their numbers in the quad, reordered as the planes want it.
+// The planes of three corners that snap; the rest of the record is left open. `corners`: their numbers
+// in the quad, reordered as the planes want it.
 ShadeTriangle regularPlanes(Corner a, Corner b, Corner c, inout uvec3 corners) {
   if (comesFirst(b, a)) swapCorners(a, b, corners.x, corners.y);
   if (comesFirst(c, b)) swapCorners(b, c, corners.y, corners.z);
@@ -41,32 +42,34 @@ ShadeTriangle regularPlanes(Corner a, Corner b, Corner c, inout uvec3 corners) {
   precise const float area = d1.x * d2.y - d1.y * d2.x;
   t.anchor = a.pixel;
   t.minInvW = c.invW;
-  t.invW = vec3(a.invW, 0.0, 0.0);
-  t.b1 = vec3(0.0);
-  t.b2 = vec3(0.0);
-  if (area == 0.0) return t;  // thinner than rounding: the nearest corner's attributes throughout
+  t.invW = a.invW;
+  // Thinner than rounding: the nearest corner's attributes throughout.
+  const bool flat_ = area == 0.0;
   precise const float rise1 = b.invW - a.invW;
   precise const float rise2 = c.invW - a.invW;
-  t.invW.yz = gradient(d1, d2, rise1, rise2, area);
-  t.b1.yz = gradient(d1, d2, b.invW, 0.0, area);
-  t.b2.yz = gradient(d1, d2, 0.0, c.invW, area);
+  t.invWSlope = flat_ ? vec2(0.0) : gradient(d1, d2, rise1, rise2, area);
+  t.b1Slope = flat_ ? vec2(0.0) : gradient(d1, d2, b.invW, 0.0, area);
+  t.b2Slope = flat_ ? vec2(0.0) : gradient(d1, d2, 0.0, c.invW, area);
   return t;
 }
 
 // Of homogeneous corners, wherever they are: the inverse of the matrix (a b c) (Olano and Greer
-// 1997). `anchor`: a pixel that the triangle covers or is near.
-ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor) {
+// 1997). `anchor`: a pixel that the triangle covers or is near. `atAnchor`: both weights there.
+ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor, out vec2 atAnchor) {
   a.xy -= anchor * a.z;
   b.xy -= anchor * b.z;
   c.xy -= anchor * c.z;
   const vec3 ea = edgePlane(b, c), eb = edgePlane(c, a), ec = edgePlane(a, b);
   const float det = dot(a, ea);
+  const vec3 invW = (ea + eb + ec) / det, b1 = eb / det, b2 = ec / det;
   ShadeTriangle t;
   t.anchor = anchor;
   t.minInvW = -1.0;
-  t.invW = ((ea + eb + ec) / det).zxy;
-  t.b1 = (eb / det).zxy;
-  t.b2 = (ec / det).zxy;
+  t.invW = invW.z;
+  t.invWSlope = invW.xy;
+  t.b1Slope = b1.xy;
+  t.b2Slope = b2.xy;
+  atAnchor = vec2(b1.z, b2.z);
   return t;
 }
 

@@ -9,6 +9,7 @@
 namespace oitlab::raster {
 using ivec2 = glm::ivec2;
 using uvec3 = glm::uvec3;
+using ivec4 = glm::ivec4;
 using uvec4 = glm::uvec4;
 #endif
 
@@ -25,37 +26,47 @@ using uvec4 = glm::uvec4;
 #define TRIANGLE_IRREGULAR 2u  // a vertex nearer than the near plane or beyond the guard band
 #define TRIANGLE_SNAPPED_SHIFT 2  // 3 bits: the vertex has snapped coordinates
 #define TRIANGLE_CORNER_SHIFT 5   // 3 x 2 bits: which corner of the quad weighs 1 - b1 - b2, b1, b2
-#define TRIANGLE_INDEX_SHIFT 12   // 20 bits: of the IrregularTriangle
-#define MAX_IRREGULAR (1u << 20)
+#define TRIANGLE_TEXTURED (1u << 11)  // QuadAttributes::uvs are there
+#define TRIANGLE_COLORED (1u << 12)   // QuadAttributes::colors are there; else all are white
+#define TRIANGLE_INDEX_SHIFT 13       // 19 bits: of the IrregularTriangle
+#define MAX_IRREGULAR (1u << 19)
+
+// The records below are made of whole 16-byte words: a lane's loads and stores of 4 bytes each would
+// cost a GPU as many transactions.
 
 // Coverage of one triangle, 32 bytes. Snapped vertices in 1/256 pixel, positively oriented.
 struct RasterTriangle {
-  ivec2 v[3];
+  ivec4 v01;  // vertices 0 and 1
+  ivec2 v2;
   uint id;  // primitive id
   uint flags;
 };
 
 // Vertices in homogeneous pixels (x / w = pixels), for the few triangles that cannot be snapped:
-// 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented, like RasterTriangle::v.
+// 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented, like RasterTriangle.
 struct IrregularTriangle {
   vec3 p[3];
+  float b1, b2;  // at the anchor; 0 for regular triangles, whose anchor is a corner
 };
 
-// What is linear on the screen, relative to `anchor`, in pixels: 1 / w and the two barycentric
-// weights over w. 48 bytes.
+// What shading needs, 64 bytes. Linear on the screen, relative to `anchor`, in pixels: 1 / w and the
+// two barycentric weights over w.
 struct ShadeTriangle {
   vec2 anchor;
-  vec3 invW;    // at the anchor, per pixel right, per pixel down
-  float minInvW;  // farthest vertex; the nearest is invW.x. Negative: no bounds (irregular)
-  vec3 b1, b2;
+  float invW;     // at the anchor
+  float minInvW;  // farthest corner; the nearest is invW. Negative: no bounds (irregular)
+  vec2 invWSlope, b1Slope;  // per pixel right, per pixel down
+  vec2 b2Slope;
+  uint id;        // primitive id
+  uint flags;
+  uint normals[3];
+  uint material;
 };
 
-// Vertex attributes of a visible quad, 68 bytes, together for the sake of the cache.
+// Further attributes of a visible quad, 48 bytes, written and read where flags say so.
 struct QuadAttributes {
-  uint normals[4];
-  uint colors[4];
-  vec2 uvs[4];
-  uint material;
+  uvec4 colors;
+  vec4 uvs01, uvs23;
 };
 
 // The primitives of a bin: quads (small) and single triangles (large), in the list of entries.
@@ -89,15 +100,15 @@ struct RasterCounters {
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer QuadBuffer { uvec4 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer QuadIdBuffer { uvec2 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterTriangleBuffer { RasterTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer QuadBuffer { uvec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer QuadIdBuffer { uvec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RasterTriangleBuffer { RasterTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer IrregularBuffer { IrregularTriangle at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadeTriangleBuffer { ShadeTriangle at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer AttributeBuffer { QuadAttributes at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ShadeTriangleBuffer { ShadeTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AttributeBuffer { QuadAttributes at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBuffer { Bin at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterCounterBuffer { RasterCounters c; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBoxBuffer { BinBox at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BinBoxBuffer { BinBox at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordBuffer { uint at[]; };
 #endif
 
@@ -123,8 +134,8 @@ struct RasterPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(RasterTriangle) == 32 && sizeof(ShadeTriangle) == 48 &&
-              sizeof(QuadAttributes) == 68);
+static_assert(sizeof(RasterTriangle) == 32 && sizeof(ShadeTriangle) == 64 &&
+              sizeof(QuadAttributes) == 48);
 }  // namespace oitlab::raster
 #endif
 

@@ -12,38 +12,54 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 shared uint groupSmall, groupLarge, firstSmall, firstLarge;
 shared uint groupTriangles, groupDegenerate, groupBackFacing;
 
-void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint id, ivec4 box) {
-  RasterTriangle t;
-  t.v = ivec2[3](ivec2(0), ivec2(0), ivec2(0));
-  t.id = id;
-  t.flags = 0u;
+// What the two halves of a quad share.
+struct Quad {
+  uvec4 normals;
+  uint material;
+  uint flags;  // TRIANGLE_TEXTURED, TRIANGLE_COLORED
+};
+
+uint component(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
+
+void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint id, ivec4 box,
+                   Quad quad) {
+  uint flags = 0u;
+  ivec2 v1 = b.snapped, v2 = c.snapped;
   if (!isEmpty(box)) {
     const bool regular = a.snaps && b.snaps && c.snaps;
     const bool positive = regular ? signedArea(a.snapped, b.snapped, c.snapped) > 0
                                   : dot(edgePlane(a.p, b.p), c.p) > 0.0;
-    t.flags = TRIANGLE_VISIBLE;
-    t.v = positive ? ivec2[3](a.snapped, b.snapped, c.snapped)
-                   : ivec2[3](a.snapped, c.snapped, b.snapped);
-    ShadeTriangle planes;
+    flags = TRIANGLE_VISIBLE | quad.flags;
+    v1 = positive ? b.snapped : c.snapped;
+    v2 = positive ? c.snapped : b.snapped;
+    ShadeTriangle shading;
     if (regular) {
-      planes = regularPlanes(a, b, c, corners);
+      shading = regularPlanes(a, b, c, corners);
     } else {
       const uint index = atomicAdd(push.counters.c.irregularTriangles, 1u);
       const uint last = uint(positive ? c.snaps : b.snaps), middle = uint(positive ? b.snaps : c.snaps);
-      t.flags |= TRIANGLE_IRREGULAR | min(index, MAX_IRREGULAR - 1u) << TRIANGLE_INDEX_SHIFT |
-                 (uint(a.snaps) | middle << 1 | last << 2) << TRIANGLE_SNAPPED_SHIFT;
+      flags |= TRIANGLE_IRREGULAR | min(index, MAX_IRREGULAR - 1u) << TRIANGLE_INDEX_SHIFT |
+               (uint(a.snaps) | middle << 1 | last << 2) << TRIANGLE_SNAPPED_SHIFT;
       // The anchor lies amid the visible part: farther away it would cost precision.
-      planes = irregularPlanes(a.p, b.p, c.p, vec2((box.xy + box.zw) / 2) + 0.5);
+      vec2 weights;
+      shading = irregularPlanes(a.p, b.p, c.p, vec2((box.xy + box.zw) / 2) + 0.5, weights);
       if (index < push.irregularCapacity) {
         push.irregular.at[index].p[0] = a.p;
         push.irregular.at[index].p[1] = positive ? b.p : c.p;
         push.irregular.at[index].p[2] = positive ? c.p : b.p;
+        push.irregular.at[index].b1 = weights.x;
+        push.irregular.at[index].b2 = weights.y;
       }
     }
-    t.flags |= (corners.x | corners.y << 2 | corners.z << 4) << TRIANGLE_CORNER_SHIFT;
-    push.shading.at[slot] = planes;
+    flags |= (corners.x | corners.y << 2 | corners.z << 4) << TRIANGLE_CORNER_SHIFT;
+    shading.id = id;
+    shading.flags = flags;
+    shading.normals = uint[3](component(quad.normals, corners.x), component(quad.normals, corners.y),
+                              component(quad.normals, corners.z));
+    shading.material = quad.material;
+    push.shading.at[slot] = shading;
   }
-  push.triangles.at[slot] = t;
+  push.triangles.at[slot] = RasterTriangle(ivec4(a.snapped, v1), v2, id, flags);
 }
 
 // In world space, as the paper has it: the eye is where the planes x, y and w of the clip space meet.
@@ -120,15 +136,21 @@ void main() {
   const uint slot = small ? place : push.quadCapacity - 1u - place;
   push.quadBins.at[slot] =
       BinBox(firstBin.x | firstBin.y << 16, lastBin.x | lastBin.y << 16);
-  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0]);
-  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1]);
+  Quad shared_;
   QuadAttributes attributes;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    const Vertex v = push.frame.c.vertices.at[indices[i]];
-    attributes.normals[i] = v.normal;
-    attributes.colors[i] = v.color;
-    attributes.uvs[i] = v.uv;
-    attributes.material = v.material;
+  attributes.colors = uvec4(push.frame.c.vertices.at[indices.x].color, push.frame.c.vertices.at[indices.y].color,
+                            push.frame.c.vertices.at[indices.z].color, push.frame.c.vertices.at[indices.w].color);
+  shared_.normals = uvec4(push.frame.c.vertices.at[indices.x].normal, push.frame.c.vertices.at[indices.y].normal,
+                          push.frame.c.vertices.at[indices.z].normal, push.frame.c.vertices.at[indices.w].normal);
+  shared_.material = push.frame.c.vertices.at[indices.x].material;
+  shared_.flags = 0u;
+  if (push.frame.c.materials.at[shared_.material].atlas != 0u) shared_.flags |= TRIANGLE_TEXTURED;
+  if (any(notEqual(attributes.colors, uvec4(0xffffffffu)))) shared_.flags |= TRIANGLE_COLORED;
+  if (shared_.flags != 0u) {
+    attributes.uvs01 = vec4(push.frame.c.vertices.at[indices.x].uv, push.frame.c.vertices.at[indices.y].uv);
+    attributes.uvs23 = vec4(push.frame.c.vertices.at[indices.z].uv, push.frame.c.vertices.at[indices.w].uv);
+    push.attributes.at[slot] = attributes;
   }
-  push.attributes.at[slot] = attributes;
+  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0], shared_);
+  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1], shared_);
 }
