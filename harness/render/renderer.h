@@ -38,6 +38,7 @@ class Renderer {
  private:
   FrameResult renderOnce(Method& method, const Camera& camera, bool instrumented, Status& status);
   void recordOpaque(const Frame& frame) const;
+  void recordBackground(const Commands& commands) const;
 
   const Device& device_;
   const GpuScene& scene_;
@@ -45,6 +46,7 @@ class Renderer {
   MemoryLedger memory_;
   FrameBindings bindings_;
   FrameTimer timer_;
+  bool depthCleared_ = false;
   Pipeline opaque_;
   Buffer constants_;
   Commands commands_;
