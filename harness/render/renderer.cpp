@@ -31,6 +31,8 @@ Renderer::Renderer(const Device& device, const GpuScene& scene, const Target& ta
                                           .colorFormats = {vulkanFormat(target.format())},
                                           .depthFormat = Target::depthFormat,
                                           .depthWrite = true})),
+      background_(Pipeline::compute(device, "common/background.comp",
+                                    {{"TARGET_FORMAT", formatName(target.format())}})),
       constants_(device, memory_, "frame constants", sizeof(FrameConstants), BufferKind::upload),
       commands_(device.makeCommandBuffer()),
       fence_(device.vk(), vk::FenceCreateInfo()) {}
@@ -87,7 +89,7 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
       if (scene_.opaqueCount() > 0 || !depthCleared_ || device_.info().isCpu())
         recordOpaque(frame);
       else
-        recordBackground(commands_);
+        recordBackground(frame);
     });
     method.record(frame);
     timer_.end(commands_);
@@ -153,18 +155,18 @@ void Renderer::recordOpaque(const Frame& frame) const {
 }
 
 // Where nothing is opaque the depth stays that of the first frame, infinitely far everywhere: methods
-// read it and do not write it. The colour is cleared without a render pass, which GPUs with few
-// rasterizers take far longer over.
-void Renderer::recordBackground(const Commands& commands) const {
-  target_.color().transition(commands, Layout::eUndefined, Layout::eGeneral, Stage::eAllCommands,
-                             Access::eMemoryWrite, Stage::eClear, Access::eTransferWrite);
-  const vk::ClearColorValue background(backgroundColor.r, backgroundColor.g, backgroundColor.b,
-                                       backgroundColor.a);
-  commands.clearColorImage(target_.color().vk(), Layout::eGeneral, background,
-                           vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
-  target_.color().transition(commands, Layout::eGeneral, Layout::eGeneral, Stage::eClear,
-                             Access::eTransferWrite, Stage::eAllCommands,
-                             Access::eMemoryRead | Access::eMemoryWrite);
+// read it and do not write it. The colour is filled by a compute shader: clears go through the
+// rasterizer, and GPUs that have little of it take longer over them than over a method.
+void Renderer::recordBackground(const Frame& frame) const {
+  target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,
+                             Stage::eAllCommands, Access::eMemoryWrite, Stage::eComputeShader,
+                             Access::eShaderStorageWrite);
+  background_.bind(frame.commands, frame.bindings);
+  background_.push(frame.commands, backgroundColor);
+  frame.dispatchPixels();
+  target_.color().transition(frame.commands, Layout::eGeneral, Layout::eGeneral,
+                             Stage::eComputeShader, Access::eShaderStorageWrite,
+                             Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
 }
 
 std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {

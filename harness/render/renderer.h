@@ -38,7 +38,7 @@ class Renderer {
  private:
   FrameResult renderOnce(Method& method, const Camera& camera, bool instrumented, Status& status);
   void recordOpaque(const Frame& frame) const;
-  void recordBackground(const Commands& commands) const;
+  void recordBackground(const Frame& frame) const;
 
   const Device& device_;
   const GpuScene& scene_;
@@ -47,7 +47,7 @@ class Renderer {
   FrameBindings bindings_;
   FrameTimer timer_;
   bool depthCleared_ = false;
-  Pipeline opaque_;
+  Pipeline opaque_, background_;
   Buffer constants_;
   Commands commands_;
   vk::raii::Fence fence_;
