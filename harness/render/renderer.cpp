@@ -163,7 +163,7 @@ void Renderer::recordBackground(const Frame& frame) const {
                              Access::eShaderStorageWrite);
   background_.bind(frame.commands, frame.bindings);
   background_.push(frame.commands, backgroundColor);
-  frame.dispatchPixels();
+  frame.commands.dispatch((target_.width() + 31) / 32, (target_.height() + 7) / 8, 1);
   target_.color().transition(frame.commands, Layout::eGeneral, Layout::eGeneral,
                              Stage::eComputeShader, Access::eShaderStorageWrite,
                              Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);

@@ -121,6 +121,10 @@ class Lucid : public Method {
   // llvmpipe ends long loops early and in silence: there the turns are counted.
   bool verifiesLoops() const { return device_->info().isCpu(); }
 
+  // Half-blocks that a workgroup of low_raster works on side by side. On a GPU they would wait for
+  // each other: of 4, 2 and 1, 1 is fastest on an NVIDIA H200 (docs/performance.md).
+  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
+
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
   }
@@ -135,16 +139,16 @@ class Lucid : public Method {
     auto raster = [&](bool high) {
       Defines defines = common;
       defines["HIGH"] = high ? "1" : "0";
-      defines["TEAMS"] = high ? "1u" : "LOW_TEAMS";
+      defines["TEAMS"] = high ? "1u" : lowTeams();
       defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
     };
     // A workgroup a bin. On a CPU a large one is no faster.
     const bool gpu = lanes >= 32;
-    lowBlocks_ =
-        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "0"}}, {gpu ? 256u : 64u});
+    lowBlocks_ = Pipeline::compute(*device_, "lucid/blocks.comp",
+                                   {{"HIGH", "0"}, {"LOW_TEAMS", lowTeams()}}, {gpu ? 256u : 64u});
     highBlocks_ =
-        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "1"}},
+        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "1"}, {"LOW_TEAMS", lowTeams()}},
                           {gpu ? std::min(1024u, device_->info().maxWorkgroupInvocations) : 64u});
     lowRaster_ = raster(false);
     highRaster_ = raster(true);

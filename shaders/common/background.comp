@@ -2,7 +2,7 @@
 // Fills the target with one colour.
 #include "common/bindings.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 32, local_size_y = 8) in;
 layout(push_constant) uniform Push { vec4 color; };
 
 void main() {

@@ -59,7 +59,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
     uint mask = 0u;
     if (lane < batch) {
       const uint inList = keys[firstKey + first + lane] & placeMask;
-      const TriHalfBlock item = push.list.at[block.first + inList];
+      const TriHalfBlock item = itemAt(push.list, block.first + inList);
       mask = item.mask & owned;
       if (mask != 0u) prepare(firstPrepared + lane, item.triangle, corner);
     }
@@ -170,7 +170,7 @@ void blendHalfBlock(HalfBlock block) {
 void handOver(HalfBlock block) {
   uint covered = 0u;
   for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
-    covered |= push.list.at[block.first + i].mask;
+    covered |= push.list.at[block.first + i].y;
   covered = subgroupOr(covered);
   if (gl_SubgroupInvocationID != 0u) return;
 #if VERIFY_LOOPS

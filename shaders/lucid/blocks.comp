@@ -5,6 +5,7 @@
 // just the right size.
 #include "lucid/lucid_types.h"
 #include "raster/coverage.glsl"
+#include "raster/records.glsl"
 
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { LucidPush push; };
@@ -48,8 +49,8 @@ void take(bool write, uint slot, ivec2 region, uint strip, uvec4 masks) {
     }
     const uint place = base + offsets[block] + atomicAdd(cursors[block], 1u);
     const ivec2 corner = region + ivec2(c * HALF_BLOCK_WIDTH, strip * HALF_BLOCK_HEIGHT);
-    push.list.at[place] = TriHalfBlock(slot, masks[c]);
-    push.keys.at[place] = sortKey(push.shading.at[slot], corner, masks[c]);
+    push.list.at[place] = uvec2(slot, masks[c]);
+    push.keys.at[place] = sortKey(loadShading(push.shading, slot), corner, masks[c]);
   }
 }
 
@@ -64,7 +65,7 @@ void walk(bool write, Bin bin, ivec2 region) {
   for (uint i = gl_LocalInvocationIndex; i < items; i += gl_WorkGroupSize.x) {
     ++done;
     const uint slot = slotOf(bin, byStrip ? i / STRIPS : i);
-    const RasterTriangle t = push.triangles.at[slot];
+    const RasterTriangle t = loadTriangle(push.triangles, slot);
     if (t.flags == 0u) continue;
     const bool irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
     const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
@@ -79,7 +80,7 @@ void walk(bool write, Bin bin, ivec2 region) {
     }
     if (irregular) {
       const IrregularTriangle source = push.irregular.at[t.flags >> TRIANGLE_INDEX_SHIFT];
-      const ShadeTriangle planes = push.shading.at[slot];
+      const ShadeTriangle planes = loadShading(push.shading, slot);
       const float near = nearPlane(push.frame.c.viewProjection);
       for (; strip <= lastStrip; ++strip) {
         uvec4 rows;

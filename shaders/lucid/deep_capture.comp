@@ -21,7 +21,7 @@ void main() {
   const uint begin = gl_WorkGroupID.y * DEEP_PART;
   const uint end = min(begin + DEEP_PART, block.count);
   for (uint i = begin + self; i < end; i += DEEP_GROUP) {
-    const TriHalfBlock item = push.list.at[block.first + i];
+    const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
     prepare(self, item.triangle, corner);
     const float invW = preparedInvW(self, pixel);
@@ -33,7 +33,7 @@ void main() {
     Node node;
     node.color = kept ? f.color : vec4(-1.0);  // cut out: counted, not blended
     node.depth = invW;
-    node.id = push.triangles.at[item.triangle].id;
+    node.id = idOfTriangle(push.triangles, item.triangle);
     node.next = atomicExchange(push.deepPixels.at[number].head, index);
     push.nodes.at[index] = node;
   }

@@ -6,6 +6,7 @@
 #include "common/normal.glsl"
 #include "common/shade.glsl"
 #include "lucid/lucid_types.h"
+#include "raster/records.glsl"
 
 // What a triangle's fragments need, with the half-block's first sample as the origin: made once for
 // all of them, by one lane, and read by all lanes. 9 words of 16 bytes, so that the accesses of
@@ -69,7 +70,7 @@ vec2 pick(vec4 a, vec4 b, uint i) { return i == 0u ? a.xy : i == 1u ? a.zw : i =
 
 // Triangle `slot` into place `at`.
 void prepare(uint at, uint slot, ivec2 corner) {
-  const ShadeTriangle s = push.shading.at[slot];
+  const ShadeTriangle s = loadShading(push.shading, slot);
   const GpuMaterial material = push.frame.c.materials.at[s.material];
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
   const vec2 bounds = boundsOfInvW(s);

@@ -13,6 +13,11 @@ ivec2 cornerOf(uint number, uvec2 size) {
                      inBin / HALF_BLOCKS_ACROSS * HALF_BLOCK_HEIGHT));
 }
 
+TriHalfBlock itemAt(TriHalfBlockBuffer list, uint place) {
+  const uvec2 words = list.at[place];
+  return TriHalfBlock(words.x, words.y);
+}
+
 // Of a bit of a coverage mask.
 uvec2 pixelOf(uint bit) { return uvec2(bit % HALF_BLOCK_WIDTH, bit / HALF_BLOCK_WIDTH); }
 

@@ -19,7 +19,6 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS 32u  // of a bin
 #define STRIPS 8u        // rows of half-blocks in a bin
 
-#define LOW_TEAMS 4u      // half-blocks that a workgroup of low_raster works on side by side
 #define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
 #define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
@@ -36,6 +35,7 @@ struct TriHalfBlock {
   uint mask;      // coverage
 };
 
+// In memory an uvec2: one transaction.
 // The list of a half-block: tri-half-blocks [first, first + count), in no order.
 struct HalfBlock {
   uint number;
@@ -80,7 +80,7 @@ struct LucidCounters {
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { TriHalfBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; }  ;
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };

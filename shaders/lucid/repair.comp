@@ -19,11 +19,11 @@ shared uint found, walked;
 shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fragment out
 
 HalfBlock block;
-uint idOfKey(uvec2 key) { return push.triangles.at[push.list.at[block.first + key.y].triangle].id; }
+uint idOfKey(uvec2 key) { return idOfTriangle(push.triangles, push.list.at[block.first + key.y].x); }
 
 // 1 / w at a pixel, the same bits as in blend.comp.
 float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
-  const ShadeTriangle s = push.shading.at[triangle];
+  const ShadeTriangle s = loadShading(push.shading, triangle);
   return boundedInvW(originInvW(s, corner), s, pixel);
 }
 
@@ -37,7 +37,7 @@ void blendPixel(ivec2 corner, uint bit) {
   uint steps = 0u;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
     ++steps;
-    const TriHalfBlock item = push.list.at[block.first + i];
+    const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
     const float invW = invWAt(item.triangle, corner, vec2(pixel));
     if (isHidden(invW, opaque)) continue;
@@ -68,7 +68,7 @@ void blendPixel(ivec2 corner, uint bit) {
   uint samples = 0u;
   for (uint first = 0u; first < count; first += SUBGROUP_SIZE) {
     if (first + lane < count) {
-      const TriHalfBlock item = push.list.at[block.first + keys[first + lane].y];
+      const TriHalfBlock item = itemAt(push.list, block.first + keys[first + lane].y);
       prepare(lane, item.triangle, corner);
       Fragment f;
       const bool kept = shadeFragment(lane, vec2(pixel), preparedInvW(lane, vec2(pixel)), f);

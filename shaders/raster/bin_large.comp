@@ -3,6 +3,7 @@
 // is the balance between triangles of unlike sizes that the paper makes on the level of rows. COUNT 1:
 // phase 1, counts; COUNT 0: phase 3, writes.
 #include "raster/coverage.glsl"
+#include "raster/records.glsl"
 
 layout(local_size_x = LARGE_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
@@ -16,7 +17,7 @@ void main() {
   for (uint i = gl_WorkGroupID.x; i < 2u * quads; i += gl_NumWorkGroups.x) {
     const uint quad = push.quadCapacity - 1u - i / 2u;
     const uint slot = 2u * quad + i % 2u;
-    const RasterTriangle t = push.triangles.at[slot];
+    const RasterTriangle t = loadTriangle(push.triangles, slot);
     if (t.flags == 0u) continue;
     const BinBox box = push.quadBins.at[quad];
     const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);

@@ -5,6 +5,7 @@
 // The paper compacts quads between two phases of a workgroup of 1024; here only the places that
 // visible quads are written to are compact.
 #include "raster/planes.glsl"
+#include "raster/records.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
@@ -57,9 +58,9 @@ void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint 
     shading.normals = uint[3](component(quad.normals, corners.x), component(quad.normals, corners.y),
                               component(quad.normals, corners.z));
     shading.material = quad.material;
-    push.shading.at[slot] = shading;
+    storeShading(push.shading, slot, shading);
   }
-  push.triangles.at[slot] = RasterTriangle(ivec4(a.snapped, v1), v2, id, flags);
+  storeTriangle(push.triangles, slot, RasterTriangle(ivec4(a.snapped, v1), v2, id, flags));
 }
 
 // In world space, as the paper has it: the eye is where the planes x, y and w of the clip space meet.
