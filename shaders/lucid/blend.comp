@@ -128,13 +128,15 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
     atomicAdd(push.counters.c.blended, turns);
 #endif
   }
-  if (!owner || (covered & (1u << bit)) == 0u) return 0u;
-  if (p.invalid && (push.flags & (REPAIR | SHOW_ERRORS)) != 0u) {  // else repair.comp composes it
-    if ((push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
-  } else {
-    imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
+  const bool touched = owner && (covered & (1u << bit)) != 0u;
+  if (touched) {
+    if (p.invalid && (push.flags & (REPAIR | SHOW_ERRORS)) != 0u) {  // repair.comp composes it
+      if ((push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
+    } else {
+      imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
+    }
   }
-  return p.invalid ? 1u << bit : 0u;
+  return touched && p.invalid ? 1u << bit : 0u;
 }
 
 void blendHalfBlock(HalfBlock block) {
@@ -160,9 +162,10 @@ void blendHalfBlock(HalfBlock block) {
     subgroupBarrier();
   }
   invalid = subgroupOr(invalid);
-  if (lane != 0u || invalid == 0u) return;
-  atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
-  if ((push.flags & REPAIR) != 0u) addJob(block, invalid);
+  if (lane == 0u && invalid != 0u) {
+    atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
+    if ((push.flags & REPAIR) != 0u) addJob(block, invalid);
+  }
 }
 
 // A list that is too long to sort here: each of its pixels is a job of its own for repair.comp,
@@ -172,11 +175,12 @@ void handOver(HalfBlock block) {
   for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
     covered |= push.list.at[block.first + i].y;
   covered = subgroupOr(covered);
-  if (gl_SubgroupInvocationID != 0u) return;
+  if (gl_SubgroupInvocationID == 0u) {
 #if VERIFY_LOOPS
-  atomicAdd(push.counters.c.blended, block.count * (32u / OWNERS));
+    atomicAdd(push.counters.c.blended, block.count * (32u / OWNERS));
 #endif
-  for (uint rest = covered; rest != 0u; rest &= rest - 1u) addJob(block, rest & (0u - rest));
+    for (uint rest = covered; rest != 0u; rest &= rest - 1u) addJob(block, rest & (0u - rest));
+  }
 }
 
 void main() {
@@ -187,17 +191,21 @@ void main() {
 #else
   const uint count = push.counters.c.shortLists;
 #endif
-  for (uint i = gl_WorkGroupID.x * TEAMS + gl_SubgroupID; i < count; i += gl_NumWorkGroups.x * TEAMS) {
+  // One turn each, unless `workgroups` says otherwise. Barriers of the whole workgroup part the turns:
+  // subgroups that lag behind, or lanes of one, would find the next half-block in shared memory.
+  const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  for (uint first = group * TEAMS; first < count; first += groups * TEAMS) {
+    const uint i = first + gl_SubgroupID;
+    if (i < count) {
 #if HIGH
-    const HalfBlock block = push.blocks.at[columns * rows * HALF_BLOCKS - 1u - i];
-    if (block.count > LIST) {
-      handOver(block);
-      continue;
-    }
+      const HalfBlock block = push.blocks.at[columns * rows * HALF_BLOCKS - 1u - i];
+      if (block.count > LIST) handOver(block);
+      else blendHalfBlock(block);
 #else
-    const HalfBlock block = push.blocks.at[i];
+      blendHalfBlock(push.blocks.at[i]);
 #endif
-    blendHalfBlock(block);
-    subgroupBarrier();
+    }
+    barrier();
   }
 }

@@ -147,6 +147,12 @@ void makeLists(uint number) {
   }
 }
 
+// As many workgroups, or `cap` of them, in rows that every device can dispatch.
+Dispatch dispatchOf(uint groups, uint cap) {
+  if (cap != 0u) return Dispatch(min(groups, cap), 1u, 1u);
+  return Dispatch(min(groups, MAX_GROUPS), (groups + MAX_GROUPS - 1u) / MAX_GROUPS, 1u);
+}
+
 void main() {
   // HIGH 1: bins of many triangles, by large workgroups; HIGH 0: the others.
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
@@ -167,11 +173,10 @@ void main() {
   // The last workgroup to end, of either kind, knows all counts.
   const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
   const uint cap = push.flags >> FLAG_BITS;
-  const uint most = cap == 0u ? MAX_GROUPS : cap;
   const uint lowGroups = (atomicAdd(push.counters.c.shortLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
   const uint highGroups = atomicAdd(push.counters.c.longLists, 0u);
-  push.counters.c.low = Dispatch(ready ? min(lowGroups, most) : 0u, 1u, 1u);
-  push.counters.c.high = Dispatch(ready ? min(highGroups, most) : 0u, 1u, 1u);
+  push.counters.c.low = dispatchOf(ready ? lowGroups : 0u, cap);
+  push.counters.c.high = dispatchOf(ready ? highGroups : 0u, cap);
   push.counters.c.repair = Dispatch(0u, 1u, 1u);
   push.counters.c.deep = Dispatch(0u, 1u, 1u);
   push.counters.c.deepResolve = Dispatch(0u, 1u, 1u);
