@@ -7,6 +7,9 @@ import os
 import sys
 from pathlib import Path
 
+# As in `metrics`, which would load pandas: --help should not wait for it.
+METRICS = ("rmse", "psnr", "ssim", "flip", "pixels_off", "wrong_order")
+
 EXIT_DONE = 0
 EXIT_CELLS_FAILED = 1
 EXIT_BAD_INPUT = 2
@@ -27,7 +30,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
         "  report.html   one self-contained page: tables, charts, pictures\n"
         "  report.md     the same, with relative links\n"
         "  cells.csv     one row per cell, every number of the report\n"
-        "  plots/        the charts as PNG and SVG\n\n"
+        "  plots/        the charts as PNG, SVG and PDF\n\n"
         "exit codes:\n"
         "  0  done\n"
         "  1  done, but some cells failed\n"
@@ -36,6 +39,10 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     report.add_argument(
         "results", metavar="RESULTS_DIR", type=Path, help="the folder that holds cells/ and images/"
     )
+    report.add_argument("--metric", choices=METRICS, default="rmse",
+                        help="error of the quality-against-speed charts (default rmse)")
+    report.add_argument("--all-charts", action="store_true",
+                        help="draw every chart, however many there are")
     histogram = commands.add_parser(
         "histogram",
         help="chart of a scene's depth complexity",
@@ -81,7 +88,7 @@ def main(arguments: list[str] | None = None) -> int:
         )
         return EXIT_BAD_INPUT
     try:
-        result = make_report(options.results)
+        result = make_report(options.results, options.metric, options.all_charts)
     except BadResults as error:
         print(f"oitlab report: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
