@@ -28,6 +28,20 @@ struct Axes {
   TargetFormat format = TargetFormat::rgba16f;
 };
 
+/// What reading a scene needs to know of the experiment around it.
+struct Context {
+  fs::path folder;
+  ExperimentOptions options;
+  float detail = 1.0f;  ///< of generated scenes that say nothing else
+  std::vector<std::string> notes;
+};
+
+bool isGenerated(const std::string& source) {
+  const auto catalogue = sceneCatalogue();
+  return std::any_of(catalogue.begin(), catalogue.end(),
+                     [&](const SceneInfo& info) { return info.name == source; });
+}
+
 /// Names of generated scenes stay; paths are taken relative to the experiment's folder. A scene
 /// that is neither is said now, not when its turn comes after an hour of measuring.
 std::string resolveSource(const TomlTable& owner, const toml::node& node, const std::string& source,
@@ -46,12 +60,13 @@ std::string resolveSource(const TomlTable& owner, const toml::node& node, const 
   return resolved;
 }
 
-std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, const fs::path& folder,
-                                   std::vector<std::string>& notes) {
+std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, Context& context) {
+  const fs::path& folder = context.folder;
   SceneChoice choice;
   const toml::table* given = node.as_table();
   if (given == nullptr) {
     choice.spec.source = resolveSource(owner, node, owner.string(node, "a scene"), false, folder);
+    if (isGenerated(choice.spec.source)) choice.spec.detail = context.detail;
     return {choice};
   }
   TomlTable table(owner.file(), "a scene", *given);
@@ -59,7 +74,9 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, con
   if (source.empty()) table.failAt(node, "a scene needs a 'source'");
   const bool optional = table.value<bool>("optional", false);
   choice.spec.source = resolveSource(table, node, source, optional, folder);
-  choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  const bool generated = isGenerated(choice.spec.source);
+  choice.spec.detail = float(table.number("detail", generated ? context.detail : 1.0, 1e-6, 1.0));
+  if (generated && context.options.detail) choice.spec.detail = *context.options.detail;
   for (const toml::node* view : table.list("views"))
     choice.views.push_back(table.string(*view, "a view"));
   std::vector<std::optional<float>> opacities;
@@ -72,7 +89,8 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, con
   }
   table.finish();
   if (optional && !fs::exists(choice.spec.source)) {
-    notes.push_back(fmt::format("optional scene {} is not there: left out", choice.spec.source));
+    context.notes.push_back(
+        fmt::format("optional scene {} is not there: left out", choice.spec.source));
     return {};
   }
   if (opacities.empty()) return {choice};
@@ -125,12 +143,11 @@ std::vector<MethodChoice> readMethod(TomlTable& owner, const toml::node& node) {
   }
 }
 
-void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
-              std::vector<std::string>& notes) {
+void readAxes(TomlTable& table, Axes& axes, Context& context) {
   if (const auto scenes = table.list("scenes"); !scenes.empty()) {
     axes.scenes.clear();
     for (const toml::node* node : scenes)
-      for (SceneChoice& choice : readScene(table, *node, folder, notes))
+      for (SceneChoice& choice : readScene(table, *node, context))
         axes.scenes.push_back(std::move(choice));
   }
   if (const auto views = table.list("views"); !views.empty()) {
@@ -146,6 +163,7 @@ void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
       axes.sizes.push_back(*size);
     }
   }
+  if (context.options.size) axes.sizes = {*context.options.size};
   if (const auto methods = table.list("methods"); !methods.empty()) {
     axes.methods.clear();
     for (const toml::node* node : methods)
@@ -189,6 +207,47 @@ void readMeasure(TomlTable& root, const toml::node& node, MeasureSettings& setti
     root.failAt(node, "in [measure] a minimum is above its maximum");
 }
 
+/// Puts what [profile.NAME] says in place of what the file says at its top; tables such as
+/// [measure] key by key.
+void applyProfile(const std::string& file, toml::table& root, const ExperimentOptions& options,
+                  std::string& used) {
+  used = "full";
+  const toml::node* node = root.get("profile");
+  if (node && !node->is_table())
+    fail<InputError>("{}:{}: 'profile' must be tables: [profile.cpu]", file,
+                     node->source().begin.line);
+  std::vector<std::string> names;
+  if (node)
+    for (const auto& [name, table] : *node->as_table()) names.emplace_back(name.str());
+  if (options.profile == "full") return;
+  const bool there = std::find(names.begin(), names.end(), options.profile) != names.end();
+  if (!there && !options.profileRequired) return;
+  if (!there)
+    fail<InputError>("{}: no [profile.{}]{}; there are: full{}{}", file, options.profile,
+                     didYouMean(options.profile, names), names.empty() ? "" : ", ",
+                     joinNames(names));
+  toml::node& chosen = *root.get("profile")->as_table()->get(options.profile);
+  if (!chosen.is_table())
+    fail<InputError>("{}:{}: '{}' must be a table: [profile.{}]", file, chosen.source().begin.line,
+                     options.profile, options.profile);
+  TomlTable profile(file, fmt::format("[profile.{}]", options.profile), *chosen.as_table());
+  for (const char* key : {"scenes", "views", "sizes", "methods", "sweep", "detail", "measure"})
+    profile.find(key);
+  profile.finish();
+  for (auto&& [key, value] : *chosen.as_table()) {
+    // Moved, because copies of nodes forget their place in the file.
+    toml::table* target = root.get(key) ? root.get(key)->as_table() : nullptr;
+    if (toml::table* own = value.as_table(); own && target) {
+      for (auto&& [inner, given] : *own)
+        given.visit(
+            [&](auto& concrete) { target->insert_or_assign(inner.str(), std::move(concrete)); });
+    } else {
+      value.visit([&](auto& concrete) { root.insert_or_assign(key.str(), std::move(concrete)); });
+    }
+  }
+  used = options.profile;
+}
+
 }  // namespace
 
 std::string CellSpec::label() const {
@@ -222,7 +281,7 @@ nlohmann::json CellSpec::identity() const {
   return json;
 }
 
-Experiment readExperiment(const fs::path& path) {
+Experiment readExperiment(const fs::path& path, const ExperimentOptions& options) {
   const std::string file = path.string();
   toml::table root;
   try {
@@ -232,8 +291,12 @@ Experiment readExperiment(const fs::path& path) {
     fail<InputError>("{}:{}:{}: {}", file, error.source().begin.line, error.source().begin.column,
                      error.description());
   }
-  TomlTable table(file, "the experiment", root);
   Experiment experiment;
+  applyProfile(file, root, options, experiment.profile);
+  if (options.detail) experiment.overrides["detail"] = *options.detail;
+  if (options.size) experiment.overrides["size"] = {options.size->first, options.size->second};
+  TomlTable table(file, "the experiment", root);
+  table.find("profile");  // applied, or not wanted
   experiment.name = table.value<std::string>("name", path.stem().string());
   experiment.title = table.value<std::string>("title", experiment.name);
   experiment.reference = table.value<std::string>("reference", experiment.reference);
@@ -245,9 +308,11 @@ Experiment readExperiment(const fs::path& path) {
   experiment.measure.seed = std::uint64_t(table.number("seed", 1, 0, 1e15));
   if (const toml::node* node = table.find("measure")) readMeasure(table, *node, experiment.measure);
 
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  Context context{path.has_parent_path() ? path.parent_path() : fs::path("."), options, 1.0f, {}};
+  context.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  if (options.detail) context.detail = *options.detail;
   Axes axes;
-  readAxes(table, folder, axes, experiment.notes);
+  readAxes(table, axes, context);
   const auto sweeps = table.list("sweep");
   table.finish();
   std::set<std::string> known;
@@ -256,10 +321,11 @@ Experiment readExperiment(const fs::path& path) {
     if (!node->is_table()) table.failAt(*node, "'sweep' must be tables: [[sweep]]");
     TomlTable sweep(file, "[[sweep]]", *node->as_table());
     Axes own = axes;
-    readAxes(sweep, folder, own, experiment.notes);
+    readAxes(sweep, own, context);
     sweep.finish();
     addProduct(own, known, experiment.cells);
   }
+  experiment.notes = std::move(context.notes);
   if (experiment.cells.empty() && experiment.notes.empty())
     fail<InputError>("{}: no cells: it needs 'scenes' and 'methods', at the top or in a [[sweep]]",
                      file);
