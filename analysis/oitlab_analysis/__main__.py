@@ -129,8 +129,12 @@ def run_diff(options: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_paper(options: argparse.Namespace) -> tuple[str, int]:
+    from .cells import BadResults
     from .paper import make_paper
 
+    if not options.results and not (PAPER / "data").is_dir():
+        raise BadResults(f"{PAPER / 'data'} is not there: give results folders, for example: oitlab paper "
+                         "results/performance results/methods")
     return make_paper(options.results or [PAPER / "data"], options.out), EXIT_DONE
 
 

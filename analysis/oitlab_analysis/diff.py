@@ -22,7 +22,7 @@ from .device_notes import note_of
 from .labels import parameter_text
 from .report import left_out
 from .statistics import (FEWEST_BLOCKS, SEED, block_medians, interval_of, resampled_medians, verdict)
-from .table import TERMINAL_WIDTH, markdown_text, terminal_warnings
+from .table import NOTED, TERMINAL_WIDTH, markdown_text, terminal_warnings
 
 ORDER = {"slower": 0, "faster": 1, "ambiguous": 2, "same": 3}
 MOST_LISTED = 10
@@ -203,7 +203,7 @@ def _measurement_warnings(changes: list[Change], a: dict, b: dict) -> list[str]:
     if any(c.cell["device"]["type"] == "cpu" for c in changes):
         warnings.append("CPU device: these times say nothing about GPUs.")
     notes = {note_of(c.cell["device"]["name"], "blend") for c in changes} - {""}
-    return warnings + [f"Against blend: {note}" for note in sorted(notes)]
+    return warnings + [f"{NOTED.strip()} {note}" for note in sorted(notes)]
 
 
 def summary(changes: list[Change]) -> str:
@@ -219,6 +219,7 @@ def _row(change: Change) -> list[str]:
     if change.against_blend:
         ratio, interval = change.against_blend
         relative = formats.with_interval(ratio, *(interval or (None, None)))
+        relative += NOTED if note_of(change.cell["device"]["name"], "blend") else ""
     notes = []
     if change.image_changed:
         before, after = (formats.number(error) for error in change.error)
