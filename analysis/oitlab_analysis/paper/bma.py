@@ -21,6 +21,9 @@ except ImportError:  # the module comes with the method `abuffer`
     analysis = None
 
 FIGURES = (3, 5, 7, 9)
+# What the paper's OIT and BMA-OIT are, beside how much memory they sort in.
+CHOICES = {"sort": "auto", "mask": "stencil", "deep": "exact", "on_overflow": "grow",
+           "node_color": "rgba32f", "local": "keys"}
 COMMAND = "oitlab run experiments/bma.toml"
 
 
@@ -35,7 +38,7 @@ def table2(found: Measurements, device: str) -> Table:
             row = {"scene": f"{line['scene']}, {allocated}", "p.fragments": Number(float(line["fragments"]) / 1e6),
                    "p.peak": published(line["peak_depth"]), "p.oit": published(line["oit_ms"]),
                    "p.bma": published(line["bma_oit_ms"]), "p.speedup": published(line["speedup"])}
-            wants = {memory: Want("abuffer", {"sort_memory": memory, "max_fragments": allocated})
+            wants = {memory: Want("abuffer", CHOICES | {"sort_memory": memory, "max_fragments": allocated})
                      for memory in ("max", "bma")}
             cells = find(context, STAND_INS[line["scene"]], wants, size_of(line["size"]), "bma")
             for role, key in (("max", "m.oit"), ("bma", "m.bma")):
@@ -44,8 +47,8 @@ def table2(found: Measurements, device: str) -> Table:
             if cells:
                 counters = cells["bma"]["counters"]
                 row["m.fragments"] = Number(counters.get("fragments", 0) / 1e6)
-                if counters.get("peak_depth") is not None:
-                    row["m.peak"] = Number(counters["peak_depth"])
+                if "max_fragments_per_pixel" in counters:
+                    row["m.peak"] = Number(counters["max_fragments_per_pixel"])
             if compared := ratio(cells, "max", "bma"):
                 row["m.speedup"] = Number(compared.ratio, compared.low, compared.high)
             used += cells.values()
@@ -100,15 +103,13 @@ def table1(found: Measurements, device: str) -> Table:
 
 
 def speedup_in(measured: pandas.DataFrame | None, scene: str, interval: int) -> float | None:
-    """A cell of what bma_table1() gives: one row an interval, one column a scene."""
-    if measured is None or measured.empty:
+    """A cell of what bma_table1() gives: one row an interval, one column a scene, whose name starts
+    with that of the scene."""
+    if measured is None or interval not in measured.index:
         return None
-    table = measured.set_index("interval") if "interval" in measured else measured
-    for column in table.columns:
-        if str(column).split(" ")[0] == scene:
-            for index, value in table[column].items():
-                if str(index).split("-")[-1].split("–")[-1].strip() == str(interval) and pandas.notna(value):
-                    return float(value)
+    for column in measured.columns:
+        if column.split(" ")[0].rstrip(",") == scene and pandas.notna(measured.loc[interval, column]):
+            return float(measured.loc[interval, column])
     return None
 
 

@@ -140,8 +140,8 @@ def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, 
          needed: str, opacity: float | None = None, any_opacity: bool = True) -> dict[str, dict]:
     """The cells of one scene that a row needs, by role, all of one setting.
 
-    `needed` is the role without which there is no row. Prefers the published size, then the whole
-    scene (detail 1), then larger images, then the newest; and within the setting those that were
+    `needed` is the role without which there is no row. Prefers a still view, then the published size,
+    the whole scene (detail 1), more of the roles, the default view, larger images, the newest; and within the setting those that were
     measured in turn, in one group. Others are taken where there is no such group: ratio() gives
     none for them.
     """
@@ -167,7 +167,9 @@ def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, 
     def rank(key: tuple) -> tuple:
         roles = len({role for group in settings[key] for role in group})
         newest = max(c["provenance"].get("date") or "" for g in settings[key] for c in g.values())
-        return (key[:2] == size, key[2], roles, key[0] * key[1], newest)
+        view = key[4]
+        return (not view.startswith("path:"), key[:2] == size, key[2], roles, view == "default",
+                key[0] * key[1], newest)
 
     chosen = settings[max(settings, key=rank)]
     union = {role: cell for group in chosen for role, cell in group.items()}
