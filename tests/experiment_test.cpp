@@ -104,7 +104,7 @@ TEST_F(Experiments, MistakesNameFileLineAndRemedy) {
 }
 
 constexpr const char* profiled = R"(
-scenes = ["boxes", { source = "teapot", detail = 0.5 }, { source = "planes", opacity = 0.5 }]
+scenes = ["boxes", { source = "teapot", detail = 0.125 }, { source = "planes", opacity = 0.5 }]
 sizes = ["64x32", "32x16"]
 methods = ["blend", "reference"]
 [measure]
@@ -142,7 +142,7 @@ TEST_F(Experiments, AProfileReplacesWhatItNames) {
   const Experiment cpu = readExperiment(path, {.profile = "cpu"});
   EXPECT_EQ(cpu.profile, "cpu");
   EXPECT_THAT(labelsOf(cpu), ::testing::ElementsAre(
-                                 "boxes blend 16x8 0.25", "teapot blend 16x8 0.5",
+                                 "boxes blend 16x8 0.25", "teapot blend 16x8 0.125",
                                  "planes opacity 0.5 blend 16x8 0.25", "hairball blend 16x8 0.25"));
   EXPECT_EQ(cpu.measure.stop.timeLimitSeconds, 2);
   EXPECT_EQ(cpu.measure.stop.maxBlocks, 50);  // tables are replaced key by key

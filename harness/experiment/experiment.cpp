@@ -32,7 +32,7 @@ struct Axes {
 struct Context {
   fs::path folder;
   ExperimentOptions options;
-  float detail = 1.0f;  ///< of generated scenes that say nothing else
+  float detail = 1.0f;  ///< of generated scenes, at most
   std::vector<std::string> notes;
 };
 
@@ -74,9 +74,10 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, Con
   if (source.empty()) table.failAt(node, "a scene needs a 'source'");
   const bool optional = table.value<bool>("optional", false);
   choice.spec.source = resolveSource(table, node, source, optional, folder);
-  const bool generated = isGenerated(choice.spec.source);
-  choice.spec.detail = float(table.number("detail", generated ? context.detail : 1.0, 1e-6, 1.0));
-  if (generated && context.options.detail) choice.spec.detail = *context.options.detail;
+  choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  if (isGenerated(choice.spec.source))
+    choice.spec.detail =
+        context.options.detail.value_or(std::min(choice.spec.detail, context.detail));
   for (const toml::node* view : table.list("views"))
     choice.views.push_back(table.string(*view, "a view"));
   std::vector<std::optional<float>> opacities;
