@@ -54,6 +54,8 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
 }
 
 int run(const RunOptions& options) {
+  parseShard(options.shard);
+  readExperiment(options.file);  // mistakes are told before a device is looked for
   const DeviceInfo info = chosenDevice(options.device);
   const Experiment experiment = readExperiment(options.file, readOptions(options, info));
   const std::filesystem::path results = options.results.empty()
