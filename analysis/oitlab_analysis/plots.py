@@ -53,6 +53,33 @@ KINDS = {
     "memory": Kind(bars.MEMORY_CAPTION, _bar_pages, _paginated(bars.draw_memory)),
 }
 
+try:
+    from . import bma
+except ImportError:  # the module comes with the method `abuffer`
+    bma = None
+
+BMA_CAPTIONS = {
+    3: "Frame time against local memory of a shader that hardly uses it.",
+    5: "Depth complexity: pixels by the number of their fragments (log scale).",
+    7: "A fly-through: frame times, and the depth complexity of each frame.",
+    9: "Time of each sort relative to insertion sort, by interval of fragments.",
+}
+
+
+def _has_lists(section: Section) -> int:
+    return int(section.table["method"].isin(("abuffer", "local_memory")).any())
+
+
+def _bma_figure(number: int) -> Kind:
+    """The counterpart of a figure of Knowles et al. 2013."""
+    draw = getattr(bma, f"bma_figure{number}")
+    return Kind(BMA_CAPTIONS[number] + f" After figure {number} of Knowles et al. 2013.", _has_lists,
+                lambda section, page, metric: draw(section.table))
+
+
+if bma is not None:
+    KINDS |= {f"bma-figure{number}": _bma_figure(number) for number in BMA_CAPTIONS}
+
 
 @dataclass(frozen=True)
 class Task:

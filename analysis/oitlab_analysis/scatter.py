@@ -199,7 +199,7 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
     """
     table = scored(section, metric)
     table = table[table["ratio"].notna()]
-    baselines = table[table["verdict"] == "baseline"]
+    baselines = section.table[section.table["verdict"] == "baseline"]
     if baselines.empty:
         return pandas.DataFrame()
     usual = baselines["method"].mode().iloc[0]

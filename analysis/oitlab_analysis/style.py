@@ -13,7 +13,7 @@ from .sections import Section
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
 # For prints in grey.
 HATCHES = ("", "///", "...", "xx", "\\\\\\", "--", "oo", "++", "||", "**")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "h")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "p", "d")
 DASHES = ("-", "--", "-.", ":")
 STYLE = {
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from . import formats
+from .labels import records
 from .metrics import wrong_order
 from .sections import Section
 from .statistics import Comparison, compare_cells
@@ -59,7 +60,7 @@ def lines_of(section: Section, method: str, parameter: str) -> list[Line]:
               in table.groupby(["setting", *others], sort=False, dropna=False)
               if cells[column].nunique() > 1]
     # Only what differs between lines names them.
-    firsts = [cells.iloc[0] for cells in groups]
+    firsts = [records(cells.head(1))[0] for cells in groups]
     varying = [c for c in others if len({str(first[c]) for first in firsts}) > 1]
     return [
         Line(first["setting"],

@@ -174,4 +174,5 @@ def test_only_so_many_charts_are_drawn_unless_all_are_wanted(tmp_path, monkeypat
     assert len(some[0]) == plots.MOST_CHARTS and none == 0
     assert len(every[0]) == plots.MOST_CHARTS + left_out > plots.MOST_CHARTS
     kinds = {chart.name.split("-1")[0] for chart in some[0]}
-    assert kinds == set(plots.KINDS), "the first chart of every kind is among them"
+    wanted = {kind for kind in plots.KINDS if not kind.startswith("bma")}
+    assert kinds == wanted, "the first chart of every kind is among them"
