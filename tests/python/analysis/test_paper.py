@@ -272,6 +272,7 @@ def test_factor_names_what_is_furthest_off():
     text = agreement.factor("x", pairs((100, 100, 0, 0), (126, 300, 0, None)))
     assert "in 1 of 3 rows; furthest off: b, 300 measured, 100 published" in text
     assert "furthest off: b, 5.00 measured, 0 published" in agreement.factor("x", pairs((100, 0), (300, 5)))
+    assert "in 1 of 2 rows; furthest off: b, 79.0 measured" in agreement.factor("x", pairs((100, 100), (80, 79)))
     assert agreement.factor("x", pairs((1,), (None,))) == ""
 
 

@@ -344,6 +344,29 @@ def test_an_unscored_image_is_not_called_equal(tmp_path):
     assert "(equal)" not in text and "equal to the reference</figcaption>" not in text
 
 
+def test_pictures_never_take_more_than_their_room(tmp_path, monkeypatch):
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 12_000)  # for two of the smallest copies
+    for number in range(6):
+        cell = make_cell(method=f"m{number}", size=(400, 300), rmse=0.1)
+        write_cell(tmp_path, cell, image=False)
+        write_image(tmp_path / cell["image"]["file"], 400, 300, cell["image_hash"], detail=60)
+    text = html_of(tmp_path)
+    pictures = embedded_pictures(text)
+    assert 0 < len(pictures) < 6
+    assert sum(len(p["uri"]) for p in pictures.values()) < 12_000 * 1.4
+    assert f"{6 - len(pictures)} did not fit into the page" in text
+
+
+def test_a_picture_that_cells_share_takes_its_room_once(tmp_path, monkeypatch):
+    for number in range(5):
+        write_cell(tmp_path, make_cell(method=f"exact{number}", rmse=0.0))
+    size = next((tmp_path / "images").iterdir()).stat().st_size
+    write_cell(tmp_path, make_cell(method="other", rmse=0.1))
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 2 * size + 20)
+    text = html_of(tmp_path)
+    assert len(embedded_pictures(text)) == 2 and "did not fit" not in text
+
+
 def test_a_copy_averages_the_pixels_that_it_drops():
     y, x = numpy.mgrid[0:900, 0:1600]
     board = ((x + y) % 2 * 255).astype(numpy.uint8)  # a fine chequer: grey from afar
