@@ -23,7 +23,7 @@ JPEG_QUALITY = 88
 # Bytes of all pictures of a page before base64, which adds a third: the page stays under 15 MB.
 MOST_BYTES = 7_000_000
 # Decoding takes about 25 ms a megapixel on one core; more would make the report wait.
-MOST_DECODED_PIXELS = 160_000_000
+MOST_DECODED_PIXELS = 120_000_000
 # What a JPEG of such renderings takes at that quality, by experience; the rest is retried smaller.
 BYTES_PER_PIXEL = 0.25
 PNG_HEAD, PNG_END = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"IEND\xaeB`\x82"

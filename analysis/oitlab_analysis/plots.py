@@ -19,7 +19,7 @@ from .style import STYLE, Chart, save
 
 # A chart takes 0.3 to 1 s in its three formats. Beyond this many the page shows the first of each
 # kind, and --all-charts the rest.
-MOST_CHARTS = 12
+MOST_CHARTS = 10
 FEW_CHARTS = 4
 
 

@@ -72,8 +72,11 @@ def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
         return None
     floor = error_floor(table["error"])
     rows = -(-len(groups) // PANEL_COLUMNS)
-    figure = Figure(figsize=(PAGE, 1.75 * rows + 0.4), layout="constrained")
+    height = 1.75 * rows + 0.45  # inches, as all below; a layout engine would take a second
+    figure = Figure(figsize=(PAGE, height))
     grid = figure.subplots(rows, PANEL_COLUMNS, squeeze=False, sharey=True)
+    figure.subplots_adjust(left=0.65 / PAGE, right=1 - 0.1 / PAGE, bottom=0.65 / height,
+                           top=1 - 0.25 / height, wspace=0.12, hspace=0.4)
     for axes in grid.flat[len(groups):]:
         axes.remove()
     looks = looks_of(table)
@@ -83,7 +86,8 @@ def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
         set_error_axis(axes, metric, table["error"], floor)
     for axes in grid[:, 0]:
         axes.set_ylabel(metric.label, size=8)
-    figure.supxlabel("frame time, ms (log scale)\n" + textwrap.fill(source_line(section), 110), size=7.5)
+    figure.supxlabel("frame time, ms (log scale)\n" + textwrap.fill(source_line(section), 110),
+                     size=7.5, y=0)
     _legend(figure, table, looks)
     return figure
 
@@ -130,7 +134,7 @@ def _set_time_axis(axes: Axes, times: numpy.ndarray) -> None:
     while len(ticks) > 4:
         ticks = ticks[::2]
     axes.xaxis.set_major_locator(FixedLocator(list(ticks)))
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.2g}")
+    axes.xaxis.set_major_formatter(lambda value, _: f"{float(f'{value:.2g}'):g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 

@@ -59,8 +59,9 @@ def source_line(section: Section) -> str:
 def save(figure: Figure, path: Path) -> None:
     """Writes PNG, SVG and PDF without a date, so that the same data gives the same files."""
     # What bbox_inches="tight" does, but laid out once for all files: layout is the slow part.
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    if figure.get_layout_engine() is not None:
+        figure.draw_without_rendering()
+        figure.set_layout_engine(None)
     box = figure.get_tightbbox().padded(0.12)
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     for kind in KINDS:

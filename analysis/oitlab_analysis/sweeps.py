@@ -14,11 +14,11 @@ import pandas
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
 
 from . import formats
 from .labels import records
-from .metrics import wrong_order
+from .metrics import METRICS, wrong_order
+from .scatter import error_floor, set_error_axis
 from .sections import Section
 from .statistics import Comparison, compare_cells
 from .style import PAGE, line_style, source_line
@@ -102,8 +102,8 @@ def draw_depth_filter(section: Section, page: int = 0, metric: str = "") -> Figu
     figure = Figure(figsize=(PAGE, 3.1), layout="constrained")
     left, right = figure.subplots(1, 2)
     shares = [100 * _invalid_share(line.cells) for line in lines]
-    positive = [share[share > 0].min() for share in shares if (share > 0).any()]
-    floor = min(positive) / 4 if positive else 1e-4
+    every = pandas.Series(numpy.concatenate(shares))
+    floor = error_floor(every)
     drawn = set()
     for line, look, share in zip(lines, looks, shares):
         if line.setting not in drawn:  # repaired or not, as many were found
@@ -111,10 +111,7 @@ def draw_depth_filter(section: Section, page: int = 0, metric: str = "") -> Figu
                       **look | {"linestyle": "-"})
         drawn.add(line.setting)
         _draw_ratios(right, line.values, against(section, line, DEPTH_FILTER_BASE), look, 100)
-    left.set_yscale("log")
-    left.set_ylim(bottom=floor)
-    left.yaxis.set_major_formatter(lambda v, _: "0" if v <= floor * 1.01 else f"{v:g}")
-    left.yaxis.set_minor_formatter(NullFormatter())
+    set_error_axis(left, METRICS["wrong_order"], every, floor)
     left.set_ylabel("invalid pixels before repair, %", size=8)
     right.set_ylabel(f"frame time against a filter of {DEPTH_FILTER_BASE}, %", size=8)
     _finish(figure, [left, right], "size of the depth filter", section, lines, looks)
