@@ -42,8 +42,7 @@ def wrong_order(table: pandas.DataFrame) -> numpy.ndarray:
 METRICS = {
     "rmse": Metric("RMSE", lambda t: column(t, "quality.rmse")),
     "psnr": Metric("PSNR, dB", _psnr_error, lambda error: float(-20 * numpy.log10(error)), "∞"),
-    "ssim": Metric("SSIM", lambda t: numpy.maximum(0, 1 - column(t, "quality.ssim")),
-                   lambda error: 1 - error, "1"),
+    "ssim": Metric("1 − SSIM", lambda t: numpy.maximum(0, 1 - column(t, "quality.ssim"))),
     "flip": Metric("FLIP", lambda t: column(t, "quality.flip")),
     "pixels_off": Metric("pixels off by more than 1/255, %",
                          lambda t: 100 * column(t, "quality.pixels_off")),
