@@ -10,7 +10,7 @@ import jinja2
 from . import formats, images
 from .labels import parameter_text, parameters_of, records
 from .sections import Section
-from .table import NOTED, describe, error_caption, setting_heading
+from .table import describe, error_caption, setting_heading
 
 TEMPLATES = Path(__file__).parent / "templates"
 

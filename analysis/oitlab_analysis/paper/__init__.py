@@ -1,7 +1,7 @@
 """`oitlab paper`: the tables and figures of the papers, published beside measured.
 
 `published` reads what the papers print, `measured` finds the cells that answer to it, `lucidraster`,
-`methods` and `bma` put both into tables, `agreement` says where they agree, `table` writes them.
+`methods` and `bma` put both into tables with the help of `common`, `agreement` says where they agree, `table` writes them.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from ..sections import add_comparisons, make_sections
 from ..style import STYLE, save
 from ..table import markdown_text, terminal_warnings
 from . import bma, lucidraster, methods
+from .common import file_name
 from .measured import Context, Measurements, gather
 from .table import Table, latex_text, markdown, missing_text, write
 
@@ -73,7 +74,7 @@ def tables_of(found: Measurements, device: str) -> list[Table]:
 
 def draw_pictures(found: Measurements, device: str, out: Path) -> list[tuple[str, str, bool]]:
     """Saves the figures as PDF, SVG and PNG; (name, caption, whether there was anything to draw)."""
-    suffix = lucidraster.file_name(device)
+    suffix = file_name(device)
     drawn = []
     with matplotlib.rc_context(STYLE):
         for name, experiment, caption, draw in PLOTS:

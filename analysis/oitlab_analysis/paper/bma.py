@@ -8,9 +8,9 @@ import pandas
 from matplotlib.figure import Figure
 
 from ..cells import as_table
-from ..table import NOTED
 from .agreement import factor, order
-from .lucidraster import build, columns, file_name, general_notes, head, pairs_of, published, size_of
+from .common import (build, columns, file_name, general_notes, head, pairs_of, published, size_of,
+                     without_ratios)
 from .measured import Context, Measurements, Want, choose, find, ratio
 from .published import STAND_INS, read
 from .table import Column, Number, Table
@@ -40,7 +40,7 @@ def table2(found: Measurements, device: str) -> Table:
                    "p.bma": published(line["bma_oit_ms"]), "p.speedup": published(line["speedup"])}
             wants = {memory: Want("abuffer", CHOICES | {"sort_memory": memory, "max_fragments": allocated})
                      for memory in ("max", "bma")}
-            cells = find(context, STAND_INS[line["scene"]], wants, size_of(line["size"]), "bma")
+            cells = find(context, STAND_INS[line["scene"]], wants, size_of(line["size"]), "bma", "bma")
             for role, key in (("max", "m.oit"), ("bma", "m.bma")):
                 if role in cells:
                     row[key] = Number(cells[role]["statistics"]["frame"]["median"])
@@ -62,7 +62,7 @@ def table2(found: Measurements, device: str) -> Table:
     if context:
         agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
                                  factor("Speed-up", pairs_of(rows, "speedup"))) if s]
-        notes = [n for n in general_notes(context, used, others, paper[0]["size"]) if not n.startswith(NOTED.strip())]
+        notes = without_ratios(general_notes(context, used, others, paper[0]["size"]))
     return Table(
         name=f"bma-table2-{file_name(device)}", title="BMA: fixed allocation (OIT) against BMA-OIT",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
@@ -98,6 +98,8 @@ def table1(found: Measurements, device: str) -> Table:
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
         columns=[Column("scene", "scene, interval")] + columns([("speedup", "speed-up")], paper[0]["device"], device),
         rows=rows, measured_on=context.describe() if context else "nothing yet", agreement=agreement,
+        notes=without_ratios(general_notes(context, [], 0, "1680x1050"))
+        if context else [],
         missing=[row["scene"] for row in rows if not row.get("m.speedup")], command=COMMAND,
     )
 

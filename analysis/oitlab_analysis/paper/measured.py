@@ -137,11 +137,13 @@ class Want:
 
 
 def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, int] | None,
-         needed: str, opacity: float | None = None, any_opacity: bool = True) -> dict[str, dict]:
+         needed: str, experiment: str, opacity: float | None = None,
+         any_opacity: bool = True) -> dict[str, dict]:
     """The cells of one scene that a row needs, by role, all of one setting.
 
     `needed` is the role without which there is no row. Prefers a still view, then the published size,
-    the whole scene (detail 1), more of the roles, the default view, larger images, the newest; and within the setting those that were
+    cells of the experiment that is made for the table, the whole scene (detail 1), more of the roles,
+    the default view, larger images, the newest; and within the setting those that were
     measured in turn, in one group. Others are taken where there is no such group: ratio() gives
     none for them.
     """
@@ -167,8 +169,9 @@ def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, 
     def rank(key: tuple) -> tuple:
         roles = len({role for group in settings[key] for role in group})
         newest = max(c["provenance"].get("date") or "" for g in settings[key] for c in g.values())
+        made_for_it = any(c["experiment"] == experiment for g in settings[key] for c in g.values())
         view = key[4]
-        return (not view.startswith("path:"), key[:2] == size, key[2], roles, view == "default",
+        return (not view.startswith("path:"), key[:2] == size, made_for_it, key[2], roles, view == "default",
                 key[0] * key[1], newest)
 
     chosen = settings[max(settings, key=rank)]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import statistics
 
-from ..table import NOTED
 from .agreement import factor, order
-from .lucidraster import (LUCID, build, columns, file_name, general_notes, head, pairs_of, published)
+from .common import (build, columns, file_name, general_notes, head, pairs_of, published,
+                     without_ratios)
+from .lucidraster import LUCID
 from .measured import Context, Measurements, Want, find, ratio
 from .published import STAND_INS, read
 from .table import Column, Number, Table
@@ -43,7 +44,7 @@ def opening(found: Measurements, device: str) -> Table:
             if want:
                 times, errors, off, cells = [], [], [], []
                 for scene in SCENES:
-                    pair = find(context, scene, {"it": want, "hw": HW}, (2560, 1330), "it")
+                    pair = find(context, scene, {"it": want, "hw": HW}, (2560, 1330), "it", "methods")
                     compared = ratio(pair, "it", "hw")
                     if compared:
                         cells += pair.values()
@@ -100,7 +101,7 @@ def memory(found: Measurements, device: str) -> Table:
             if name in ("Atrium", "Smoke", "Power Plant"):
                 continue
             row = {"scene": name, "p.lucid": Number(float(paper["megabytes"]) * 1e6 / 2**20)}
-            cells = find(context, scene, MEMORY, (2560, 1330), "lucid")
+            cells = find(context, scene, MEMORY, (2560, 1330), "lucid", "memory")
             for method, cell in cells.items():
                 own = cell["memory_bytes"].get("method", cell["memory_bytes"]["total"])
                 row[f"m.{method}"] = Number(own / 2**20)
@@ -115,8 +116,8 @@ def memory(found: Measurements, device: str) -> Table:
         below = [row for row in rows if row.get("m.lucid") and row["m.lucid"].value < row["p.lucid"].value]
         counted = sum(bool(row.get("m.lucid")) for row in rows)
         agreement = [f"Below the paper's fixed {paper['megabytes']} MB in {len(below)} of {counted} scenes."]
-        notes = [n for n in general_notes(context, used, others, "2560x1330") if "times say" not in n
-                 and not n.startswith(NOTED.strip())]
+        notes = [n for n in without_ratios(general_notes(context, used, others, "2560x1330"))
+                 if "times say" not in n]
     return Table(
         name=f"memory-{file_name(device)}", title="Memory of the methods themselves",
         source=f"{paper['source']}, {paper['table']}",

@@ -203,10 +203,19 @@ def test_the_published_size_is_preferred(tmp_path):
     write_performance(tmp_path, ["boxes"], factor=9.0, size=(4000, 2000))
     context, = gather([tmp_path]).contexts
     wants = {"sw": Want("lucid", {"repair": False}), "hw": Want("blend", {})}
-    cells = find(context, "boxes", wants, SIZE, "sw")
+    cells = find(context, "boxes", wants, SIZE, "sw", "performance")
     assert cells["sw"]["size"] == [2560, 1330]
     assert ratio(cells, "sw", "hw").ratio == pytest.approx(3.0, rel=0.01)
-    assert find(context, "boxes", wants, (1, 1), "sw")["sw"]["size"] == [4000, 2000]
+    assert find(context, "boxes", wants, (1, 1), "sw", "performance")["sw"]["size"] == [4000, 2000]
+
+
+def test_cells_of_the_experiment_for_the_table_are_preferred(tmp_path):
+    write_performance(tmp_path, ["boxes"], factor=7.0, size=(640, 333), experiment="memory")
+    write_performance(tmp_path, ["boxes"], factor=3.0, size=(320, 166))
+    context, = gather([tmp_path]).contexts
+    wants = {"sw": Want("lucid", {"repair": False})}
+    assert find(context, "boxes", wants, SIZE, "sw", "performance")["sw"]["size"] == [320, 166]
+    assert find(context, "boxes", wants, SIZE, "sw", "memory")["sw"]["size"] == [640, 333]
 
 
 def test_the_depth_filter_table(tmp_path):
