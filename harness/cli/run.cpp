@@ -30,10 +30,7 @@ ExperimentOptions readOptions(const RunOptions& options, const DeviceInfo& devic
   read.profile = automatic ? (device.type == "cpu" ? "cpu" : "full") : options.profile;
   read.profileRequired = !automatic;
   if (options.detail > 0) read.detail = options.detail;
-  if (!options.size.empty()) {
-    read.size = parseSize(options.size);
-    if (!read.size) fail<InputError>("--size {}: wanted WxH, such as 1280x720", options.size);
-  }
+  if (!options.size.empty()) read.size = parseSize(options.size);
   return read;
 }
 
@@ -54,8 +51,8 @@ int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
 }
 
 int run(const RunOptions& options) {
-  parseShard(options.shard);
   readExperiment(options.file);  // mistakes are told before a device is looked for
+  parseShard(options.shard);
   const DeviceInfo info = chosenDevice(options.device);
   const Experiment experiment = readExperiment(options.file, readOptions(options, info));
   const std::filesystem::path results = options.results.empty()
@@ -103,6 +100,9 @@ void addRun(CLI::App& program, Action& action) {
       ->check(CLI::Range(1e-6, 1.0))
       ->type_name("0..1");
   verb->add_option("--size", options->size, "This image size, instead of those of the file")
+      ->check([](const std::string& text) {
+        return parseSize(text) ? "" : fmt::format("{}: wanted WxH, such as 1280x720", text);
+      })
       ->type_name("WxH");
   verb->add_flag("--dry-run", options->dryRun, "List the cells and measure nothing");
   addDeviceOptions(*verb, options->device);

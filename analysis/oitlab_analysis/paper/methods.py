@@ -18,7 +18,7 @@ PUBLISHED = {"Hardware alpha blending": HW, "Weighted-blended OIT": Want("wboit"
              "LucidRaster": Want("lucid", LUCID)}
 # Methods that the paper's table does not have.
 MORE = {
-    ("LucidRaster", "repaired: exact"): Want("lucid", LUCID | {"repair": True}),
+    ("LucidRaster", "repaired: exact order"): Want("lucid", LUCID | {"repair": True}),
     ("Hardware alpha blending", "sorted by centroid"): Want("blend", {"order": "sorted"}),
     ("A-buffer", "BMA: exact"): Want("abuffer", {"sort_memory": "bma"}),
     ("A-buffer", "fixed allocation: exact"): Want("abuffer", {"sort_memory": "max"}),

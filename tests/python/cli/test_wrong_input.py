@@ -36,7 +36,7 @@ BAD_INPUT = [
     (["diff", "nowhere", "nowhere"], ["nowhere"]),
     (["paper", "nowhere"], ["nowhere"]),
     (["pack", "nowhere", "x.json.gz"], ["nowhere"]),
-    (["run", "nowhere.toml", "--size", "8"], ["--size 8", "WxH"]),
+    (["run", "nowhere.toml", "--size", "8"], ["--size", "8: wanted WxH"]),
     (["compare", "a.png", "nowhere.png"], ["a.png"]),
     (["list", "metods"], ["did you mean 'methods'"]),
 ]
