@@ -103,6 +103,107 @@ TEST_F(Experiments, MistakesNameFileLineAndRemedy) {
   EXPECT_THAT(errorOf("name = \"empty\"\n"), HasSubstr("no cells"));
 }
 
+constexpr const char* profiled = R"(
+scenes = ["boxes", { source = "teapot", detail = 0.125 }, { source = "planes", opacity = 0.5 }]
+sizes = ["64x32", "32x16"]
+methods = ["blend", "reference"]
+[measure]
+time_limit = 7
+max_blocks = 50
+[[sweep]]
+scenes = ["hairball"]
+[profile.cpu]
+sizes = ["16x8"]
+detail = 0.25
+methods = ["blend"]
+[profile.cpu.measure]
+time_limit = 2
+[profile.tiny]
+scenes = ["boxes"]
+[[profile.tiny.sweep]]
+methods = [{ method = "blend", order = "sorted" }]
+)";
+
+std::vector<std::string> labelsOf(const Experiment& experiment) {
+  std::vector<std::string> labels;
+  for (const CellSpec& cell : experiment.cells)
+    labels.push_back(fmt::format("{} {:g}", cell.label(), cell.scene.detail));
+  return labels;
+}
+
+TEST_F(Experiments, AProfileReplacesWhatItNames) {
+  const auto path = folder_ / "p.toml";
+  writeFileAtomically(path, profiled);
+  const Experiment full = readExperiment(path);
+  EXPECT_EQ(full.profile, "full");
+  EXPECT_EQ(full.cells.size(), 3u * 2 * 2 + 2 * 2);
+  EXPECT_EQ(full.measure.stop.timeLimitSeconds, 7);
+
+  const Experiment cpu = readExperiment(path, {.profile = "cpu"});
+  EXPECT_EQ(cpu.profile, "cpu");
+  EXPECT_THAT(labelsOf(cpu), ::testing::ElementsAre(
+                                 "boxes blend 16x8 0.25", "teapot blend 16x8 0.125",
+                                 "planes opacity 0.5 blend 16x8 0.25", "hairball blend 16x8 0.25"));
+  EXPECT_EQ(cpu.measure.stop.timeLimitSeconds, 2);
+  EXPECT_EQ(cpu.measure.stop.maxBlocks, 50);  // tables are replaced key by key
+
+  EXPECT_THAT(labelsOf(readExperiment(path, {.profile = "tiny"})),
+              ::testing::ElementsAre("boxes blend 64x32 1", "boxes reference 64x32 1",
+                                     "boxes blend 32x16 1", "boxes reference 32x16 1",
+                                     "boxes blend order=sorted 64x32 1",
+                                     "boxes blend order=sorted 32x16 1"));
+}
+
+TEST_F(Experiments, DetailAndSizeOfTheCommandLineReplaceAllOfTheFile) {
+  const auto path = folder_ / "p.toml";
+  writeFileAtomically(path, profiled);
+  const Experiment experiment =
+      readExperiment(path, {.profile = "cpu", .detail = 0.125f, .size = {{8, 4}}});
+  EXPECT_THAT(
+      labelsOf(experiment),
+      ::testing::ElementsAre("boxes blend 8x4 0.125", "teapot blend 8x4 0.125",
+                             "planes opacity 0.5 blend 8x4 0.125", "hairball blend 8x4 0.125"));
+  EXPECT_EQ(experiment.overrides.dump(), R"({"detail":0.125,"size":[8,4]})");
+}
+
+TEST_F(Experiments, AProfileThatIsNotThere) {
+  const auto path = folder_ / "p.toml";
+  writeFileAtomically(path, small);
+  EXPECT_EQ(readExperiment(path, {.profile = "cpu"}).profile, "full");  // chosen by itself
+  writeFileAtomically(path, profiled);
+  try {
+    readExperiment(path, {.profile = "cpv", .profileRequired = true});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("p.toml"), HasSubstr("[profile.cpv]"),
+                                    HasSubstr("did you mean 'cpu'"), HasSubstr("full, cpu, tiny")));
+  }
+  writeFileAtomically(path,
+                      "scenes = [\"boxes\"]\nmethods = [\"blend\"]\n[profile.cpu]\nseeds = 3\n");
+  try {
+    readExperiment(path, {.profile = "cpu"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("p.toml:4"), HasSubstr("'seeds' in [profile.cpu]")));
+  }
+}
+
+TEST_F(Experiments, EveryExperimentOfTheProjectCanBeRead) {
+  const std::filesystem::path folder =
+      std::filesystem::path(OITLAB_TEST_SOURCE_DIR) / "experiments";
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml" || entry.path().stem() == "views") continue;
+    for (const char* profile : {"full", "cpu"}) {
+      const Experiment experiment = readExperiment(entry.path(), {.profile = profile});
+      EXPECT_FALSE(experiment.cells.empty()) << entry.path();
+      EXPECT_EQ(experiment.name, entry.path().stem()) << "results go to a folder of this name";
+    }
+    ++read;
+  }
+  EXPECT_GE(read, 7);
+}
+
 TEST_F(Experiments, AnOptionalSceneThatIsNotThereIsLeftOutWithANote) {
   const Experiment experiment = read(R"(
 scenes = ["boxes", { source = "nowhere.glb", optional = true }]
@@ -148,38 +249,6 @@ TEST_F(Experiments, CellIdsTellCellsAndDevicesApart) {
   }
   EXPECT_EQ(ids.size(), 2 * cells.size());
   EXPECT_THAT(cellId(cells[1], a), HasSubstr("boxes-blend-order-sorted-64x32-"));
-}
-
-// What a CPU device cannot do in a reasonable time is made smaller there, and only there.
-TEST_F(Experiments, ACpuDeviceIsGivenLess) {
-  const std::string text = R"(
-scenes = ["boxes", { source = "planes", detail = 0.02 }]
-sizes = ["1920x1080", "640x360"]
-methods = ["blend"]
-[measure]
-time_limit = 10
-[cpu_device]
-sizes = ["64x36"]
-detail = 0.1
-time_limit = 0.5
-[[sweep]]
-scenes = ["teapot"]
-)";
-  const Experiment onGpu = read(text);
-  EXPECT_EQ(onGpu.cells.size(), 6u);
-  EXPECT_EQ(onGpu.cells[0].width, 1920u);
-  EXPECT_EQ(onGpu.cells[0].scene.detail, 1.0f);
-  EXPECT_EQ(onGpu.measure.stop.timeLimitSeconds, 10);
-  const Experiment onCpu = readExperiment(folder_ / "x.toml", true);
-  ASSERT_EQ(onCpu.cells.size(), 3u);
-  for (const CellSpec& cell : onCpu.cells) EXPECT_EQ(cell.height, 36u) << cell.label();
-  EXPECT_EQ(onCpu.cells[0].scene.detail, 0.1f);
-  EXPECT_EQ(onCpu.cells[1].scene.detail, 0.02f) << "less than that already";
-  EXPECT_EQ(onCpu.cells[2].scene.detail, 0.1f) << "of a sweep";
-  EXPECT_EQ(onCpu.measure.stop.timeLimitSeconds, 0.5);
-  read(small);
-  EXPECT_EQ(readExperiment(folder_ / "x.toml", true).cells.size(), read(small).cells.size());
-  EXPECT_THAT(errorOf(std::string(small) + "[cpu_device]\nsise = [\"8x8\"]\n"), HasSubstr("sise"));
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(NamedViews, NoFileIsNoError) {
 }
 
 TEST_F(NamedViews, TheFileBesideTheSceneHasTheLastWord) {
-  toml("experiments/scenes.toml",
+  toml("experiments/views.toml",
        "[x]\ndefault = 'look:1,0,0,0,0,0'\nside = 'look:2,0,0,0,0,0'\n[y]\nother = 'look:'\n");
   EXPECT_EQ(findView(loadScene({path_}), "default").eye, glm::vec3(1, 0, 0));
   toml("x.toml", "[views]\nside = 'look:3,0,0,0,0,0'\n");
@@ -150,7 +150,7 @@ TEST_F(NamedViews, PathsAreViewsToo) {
 }
 
 TEST_F(NamedViews, GeneratedScenesHaveTheirOwnTables) {
-  toml("experiments/scenes.toml",
+  toml("experiments/views.toml",
        "[x]\na = 'look:1,0,0,0,0,0'\n[x.paths]\nfly = ['look:1,0,0,0,0,0']\n"
        "[boxes]\nwrong = 'look:1,0,0,0,0,0'\n[generated.boxes]\nb = 'look:2,0,0,0,0,0'\n");
   EXPECT_TRUE(loadScene({path_}).paths.contains("fly"));

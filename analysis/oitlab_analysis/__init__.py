@@ -1,6 +1,7 @@
 """Turns a results folder of oitlab into a table, plots and a report.
 
-The modules, in the order in which the data passes through them: `cells` reads the JSON files,
-`statistics` compares the cells of a group, `sections` keeps apart what must not be compared,
-`plots` and `images` make the pictures, `table` and `report` write them down.
+The modules, in the order in which the data passes through them: `checks`, `packs` and `cells` read
+the files, `statistics` compares the cells of a group, `sections` keeps apart what must not be
+compared, `scatter`, `sweeps` and `bars` draw what `plots` asks for, `table`, `report` and `page`
+write it down. `diff` compares two folders, `paper` sets cells beside published figures.
 """

@@ -1,4 +1,4 @@
-"""The command line: `python3 -m oitlab_analysis report RESULTS_DIR`, or `histogram FILE OUT`."""
+"""The command line: `python3 -m oitlab_analysis report RESULTS_DIR`, and the other verbs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,11 @@ import os
 import sys
 from pathlib import Path
 
+# As in `metrics`, which would load pandas: --help should not wait for it.
+METRICS = ("rmse", "psnr", "ssim", "flip", "pixels_off", "wrong_order")
+
+PAPER = Path(__file__).resolve().parents[2] / "paper"
+
 EXIT_DONE = 0
 EXIT_CELLS_FAILED = 1
 EXIT_BAD_INPUT = 2
@@ -14,20 +19,23 @@ EXIT_BAD_INPUT = 2
 
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="oitlab_analysis", description="Analyses a results folder that `oitlab run` wrote."
+        prog="oitlab", description="Analyses results folders that `oitlab run` wrote."
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    report = commands.add_parser(
+
+    def add(name: str, **texts) -> argparse.ArgumentParser:
+        return commands.add_parser(name, formatter_class=argparse.RawDescriptionHelpFormatter, **texts)
+
+    report = add(
         "report",
         help="table, plots and report of a results folder",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Reads every cell in RESULTS_DIR/cells and prints a table, then the paths of the\n"
         "files that it wrote.",
         epilog="written into RESULTS_DIR:\n"
-        "  report.html   one self-contained page: tables, charts, pictures\n"
+        "  report.html   one self-contained page: tables, charts, pictures to compare\n"
         "  report.md     the same, with relative links\n"
         "  cells.csv     one row per cell, every number of the report\n"
-        "  plots/        the charts as PNG and SVG\n\n"
+        "  plots/        the charts as PNG, SVG and PDF\n\n"
         "exit codes:\n"
         "  0  done\n"
         "  1  done, but some cells failed\n"
@@ -36,6 +44,44 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     report.add_argument(
         "results", metavar="RESULTS_DIR", type=Path, help="the folder that holds cells/ and images/"
     )
+    report.add_argument("--metric", choices=METRICS, default="rmse",
+                        help="error of the quality-against-speed charts (default rmse)")
+    report.add_argument("--all-charts", action="store_true",
+                        help="draw every chart, however many there are")
+
+    diff = add(
+        "diff",
+        help="what became faster, slower or different from one results folder to another",
+        description="Compares every cell that both hold: times with intervals and verdicts, images,\n"
+        "shaders. What is only in one of them is named.",
+        epilog="exit codes: 0 done, 2 bad input, or nothing in common",
+    )
+    diff.add_argument("a", metavar="RESULTS_A", type=Path, help="before: a results folder or a pack")
+    diff.add_argument("b", metavar="RESULTS_B", type=Path, help="after")
+    diff.add_argument("--out", metavar="FILE.md", type=Path, help="write it as Markdown too")
+
+    paper = add(
+        "paper",
+        help="the papers' tables and figures, published beside measured",
+        description="Writes every table and figure of the LucidRaster and BMA papers as Markdown, LaTeX\n"
+        "and CSV, with what was published beside what the given cells say.",
+        epilog="exit codes: 0 done, 2 bad input",
+    )
+    paper.add_argument("results", metavar="RESULTS_DIR", type=Path, nargs="*",
+                       help="results folders or packs (default: all of paper/data)")
+    paper.add_argument("--out", metavar="DIR", type=Path, default=PAPER / "generated",
+                       help="where to write (default: %(default)s)")
+
+    pack = add(
+        "pack",
+        help="the raw cells of a results folder as one small file",
+        description="Writes every whole cell of a results folder into one compressed JSON file, which\n"
+        "`diff` and `paper` read like a folder. Pictures are not packed.",
+        epilog="exit codes: 0 done, 2 bad input, or nothing to pack",
+    )
+    pack.add_argument("results", metavar="RESULTS_DIR", type=Path, help="what `oitlab run` wrote")
+    pack.add_argument("pack", metavar="FILE.json.gz", type=Path, help="the file to write")
+
     histogram = commands.add_parser(
         "histogram",
         help="chart of a scene's depth complexity",
@@ -65,39 +111,86 @@ def run_histogram(source: Path, target: Path) -> int:
     return EXIT_DONE
 
 
+def run_report(options: argparse.Namespace) -> tuple[str, int]:
+    from .report import make_report
+
+    result = make_report(options.results, options.metric, options.all_charts)
+    paths = "\n".join(map(str, result.files))
+    return f"{result.text}\n{paths}", EXIT_CELLS_FAILED if result.failed else EXIT_DONE
+
+
+def run_diff(options: argparse.Namespace) -> tuple[str, int]:
+    from .diff import diff, markdown, terminal
+
+    result = diff(options.a, options.b)
+    if options.out:
+        options.out.write_text(markdown(result, (options.a, options.b)), encoding="utf-8")
+    return terminal(result), EXIT_DONE
+
+
+def run_paper(options: argparse.Namespace) -> tuple[str, int]:
+    from .cells import BadResults
+    from .paper import make_paper
+
+    if not options.results and not (PAPER / "data").is_dir():
+        raise BadResults(f"{PAPER / 'data'} is not there: give results folders, for example: oitlab paper "
+                         "results/performance results/methods")
+    return make_paper(options.results or [PAPER / "data"], options.out), EXIT_DONE
+
+
+def run_pack(options: argparse.Namespace) -> tuple[str, int]:
+    from .cells import BadResults
+    from .packs import PACK_SUFFIX, write_pack
+
+    if not (options.results / "cells").is_dir():
+        raise BadResults(f"{options.results}: not a results folder (it has no folder cells)")
+    if not options.pack.name.endswith(PACK_SUFFIX):
+        raise BadResults(f"{options.pack}: wanted a name that ends with {PACK_SUFFIX}")
+    count, left_out = write_pack(options.results, options.pack)
+    lines = [f"left out: {text}" for text in left_out]
+    if count == 0:
+        raise BadResults("; ".join([f"{options.results}: no whole cell to pack", *lines[:3]]))
+    size = options.pack.stat().st_size
+    return "\n".join([*lines, f"{options.pack}: {count} cells, {size / 1024:.0f} KiB"]), EXIT_DONE
+
+
+RUN = {"report": run_report, "diff": run_diff, "paper": run_paper, "pack": run_pack}
+
+
 def main(arguments: list[str] | None = None) -> int:
     options = parse_arguments(arguments)
     if options.command == "histogram":
         return run_histogram(options.depth, options.chart)
+    name = f"oitlab {options.command}"
     # Late, so that --help does not wait for matplotlib, and works without it.
     try:
         from .cells import BadResults
-        from .report import make_report
     except ModuleNotFoundError as error:
-        print(
-            f"oitlab report: {sys.executable} has no Python module {error.name}; wanted: pandas, "
-            "numpy, matplotlib and jinja2",
-            file=sys.stderr,
-        )
-        return EXIT_BAD_INPUT
+        return missing_module(name, error)
     try:
-        result = make_report(options.results)
+        text, code = RUN[options.command](options)
+    except ModuleNotFoundError as error:
+        return missing_module(name, error)
     except BadResults as error:
-        print(f"oitlab report: {error}", file=sys.stderr)
+        print(f"{name}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except OSError as error:
-        print(f"oitlab report: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"{name}: {error.filename}: {error.strerror}", file=sys.stderr)
         return EXIT_BAD_INPUT
     sys.stdout.reconfigure(errors="replace")  # a terminal may know no ×
     try:
-        print(result.text)
-        for path in result.files:
-            print(path)
+        print(text)
         sys.stdout.flush()
     except BrokenPipeError:
         # The reader (`| head`) has seen enough. Python would complain again when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return EXIT_CELLS_FAILED if result.failed else EXIT_DONE
+    return code
+
+
+def missing_module(name: str, error: ModuleNotFoundError) -> int:
+    print(f"{name}: {sys.executable} has no Python module {error.name}; wanted: pandas, numpy, "
+          "matplotlib and jinja2", file=sys.stderr)
+    return EXIT_BAD_INPUT
 
 
 if __name__ == "__main__":

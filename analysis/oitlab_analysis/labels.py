@@ -12,12 +12,17 @@ from .formats import is_number, natural_key, number, parameter
 SCENE_KNOBS = ("opacity", "detail", "content_hash")
 
 
+def records(table: pandas.DataFrame) -> list[dict]:
+    """The rows as dictionaries: a pandas row of this many columns is slow to make and to read."""
+    return table.to_dict("records")
+
+
 def is_given(value: object) -> bool:
     """False for what a flat table holds where a cell had nothing."""
     return value is not None and not (isinstance(value, float) and value != value)
 
 
-def parameters_of(row: pandas.Series) -> dict[str, object]:
+def parameters_of(row: dict) -> dict[str, object]:
     """All parameters of a cell by name."""
     prefix = "param."
     return {
@@ -42,7 +47,7 @@ def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
     return result
 
 
-def scene_label(row: pandas.Series, knobs: list[str]) -> str:
+def scene_label(row: dict, knobs: list[str]) -> str:
     """`tree`, or `tree (opacity=0.3)` where the scene was run in more than one way."""
     parts = []
     for knob in knobs:
@@ -85,7 +90,7 @@ def add_labels(table: pandas.DataFrame) -> pandas.DataFrame:
     sizes_vary = table[["width", "height"]].drop_duplicates().shape[0] > 1
     formats_vary, views_vary = table["format"].nunique() > 1, table["view"].nunique() > 1
     labels, scenes, sizes, settings = [], [], [], []
-    for _, row in table.iterrows():
+    for row in records(table):
         chosen = {k: v for k, v in parameters_of(row).items() if k in varying[row["method"]]}
         labels.append(row["method"] + (f" ({parameter_text(chosen)})" if chosen else ""))
         scene = scene_label(row, knobs[row["scene"]])
@@ -107,6 +112,6 @@ def add_labels(table: pandas.DataFrame) -> pandas.DataFrame:
             row["method"] != "blend",  # the usual baseline first
             natural_key(row["label"]),
         )
-        for _, row in table.iterrows()
+        for row in records(table)
     ]
     return table.iloc[sorted(range(len(keys)), key=keys.__getitem__)].reset_index(drop=True)

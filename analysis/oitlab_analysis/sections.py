@@ -5,6 +5,7 @@ No number of a report is ever computed from cells of two sections.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import pandas
@@ -12,6 +13,7 @@ import pandas
 from .cells import Collection
 from .formats import NOTHING
 from .labels import add_labels
+from .device_notes import note_of
 from .statistics import compare_group, disagreements
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")
@@ -27,14 +29,20 @@ class Section:
     context: dict[str, str]
     warnings: list[str]
     commands: list[str]
+    cells: dict[str, dict]  # the measured ones, by id
 
     def settings(self) -> list[tuple[str, pandas.DataFrame]]:
         """The cells of each setting, in the order of the table."""
+        return self._settings
+
+    @functools.cached_property
+    def _settings(self) -> list[tuple[str, pandas.DataFrame]]:
         return list(self.table.groupby("setting", sort=False))
 
 
 def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.DataFrame:
-    """Adds `baseline`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks` and `verdict`.
+    """Adds `baseline`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks`, `verdict` and
+    `device_note`: what a reader must know of a ratio to this baseline on this device, or "".
 
     Pairs only cells of one group that also share their whole context.
     """
@@ -53,6 +61,10 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
         ("verdict", "verdict"),
     ):
         table[column] = [getattr(pair[1], field) if pair else None for pair in pairs]
+    table["device_note"] = [
+        note_of(device, cells[pair[0]]["method"]) if pair else ""
+        for device, pair in zip(table["device"], pairs)
+    ]
     return table
 
 
@@ -88,15 +100,18 @@ def _section(collection: Collection, group: pandas.DataFrame, varying: list[str]
         "Build": first["build"] or NOTHING,
         "Validation layers": "on" if first["validation"] else "off",
         "Measured": " to ".join(dict.fromkeys((dates[0], dates[-1]))) if dates else NOTHING,
+        "Profile": ", ".join(sorted(set(group["profile"]))),
         "Seeds": ", ".join(sorted({f"{seed:g}" for seed in group["seed"].dropna()})) or NOTHING,
     }
-    measured = [collection.cells[i] for i in group.loc[group["status"] == "ok", "id"]]
+    cells = {i: collection.cells[i] for i in group.loc[group["status"] == "ok", "id"]}
+    measured = list(cells.values())
     return Section(
         title=title,
         table=add_labels(group),
         context=context,
-        warnings=_context_warnings(first) + _measurement_warnings(measured),
+        warnings=_context_warnings(first) + _device_notes(group) + _measurement_warnings(measured),
         commands=sorted(set(group["command"]) - {""}),
+        cells=cells,
     )
 
 
@@ -115,6 +130,10 @@ def _context_warnings(first: pandas.Series) -> list[str]:
             "results cannot be reproduced from the commit alone."
         )
     return warnings
+
+
+def _device_notes(group: pandas.DataFrame) -> list[str]:
+    return [f"Ratios marked ‡: {note}" for note in dict.fromkeys(group["device_note"]) if note]
 
 
 def _measurement_warnings(cells: list[dict]) -> list[str]:

@@ -33,6 +33,8 @@ verdict   The first of these that holds:
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -64,19 +66,45 @@ def percentile(values: Sequence[float], percent: float) -> float:
 def block_medians(times_ms: Sequence[float], blocks: Sequence[int]) -> dict[int, float]:
     """The median frame time of each block, in ms."""
     times, numbers = numpy.asarray(times_ms, dtype=float), numpy.asarray(blocks)
-    return {int(b): float(numpy.median(times[numbers == b])) for b in numpy.unique(numbers)}
+    order = numpy.lexsort((times, numbers))  # by block, and by time within a block
+    times, numbers = times[order], numbers[order]
+    found, starts, counts = numpy.unique(numbers, return_index=True, return_counts=True)
+    medians = (times[starts + (counts - 1) // 2] + times[starts + counts // 2]) / 2
+    return dict(zip(found.tolist(), medians.tolist()))
+
+
+@functools.lru_cache(maxsize=64)
+def _median_ranks(count: int, seed: int) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The ranks, among `count` sorted values, of the middle two of each resample.
+
+    Which ranks a resample draws does not depend on the values: one set of draws serves every cell
+    with as many blocks.
+    """
+    draws = numpy.random.default_rng(seed).integers(0, count, (RESAMPLES, count), dtype=numpy.int32)
+    middle = ((count - 1) // 2, count // 2)
+    draws.partition(middle, axis=1)
+    return draws[:, middle[0]], draws[:, middle[1]]
+
+
+def resampled_medians(values: Sequence[float], seed: int = SEED) -> numpy.ndarray:
+    """The medians of RESAMPLES samples of the values, drawn with replacement."""
+    ordered = numpy.sort(numpy.asarray(values, dtype=float))
+    low, high = _median_ranks(len(ordered), seed)
+    return (ordered[low] + ordered[high]) / 2
+
+
+def interval_of(draws: numpy.ndarray) -> tuple[float, float]:
+    """The percentile interval of LEVEL of a bootstrap distribution."""
+    tail = 100 * (1 - LEVEL) / 2
+    low, high = numpy.percentile(draws, [tail, 100 - tail])
+    return float(low), float(high)
 
 
 def bootstrap_interval(values: Sequence[float], seed: int = SEED) -> tuple[float, float] | None:
     """95% percentile bootstrap interval of the median; None for fewer than 6 values."""
-    data = numpy.asarray(values, dtype=float)
-    if len(data) < FEWEST_BLOCKS:
+    if len(values) < FEWEST_BLOCKS:
         return None
-    draws = numpy.random.default_rng(seed).integers(0, len(data), (RESAMPLES, len(data)))
-    medians = numpy.median(data[draws], axis=1)
-    tail = 100 * (1 - LEVEL) / 2
-    low, high = numpy.percentile(medians, [tail, 100 - tail])
-    return float(low), float(high)
+    return interval_of(resampled_medians(values, seed))
 
 
 def verdict(interval: tuple[float, float] | None) -> str:
@@ -104,6 +132,16 @@ def compare(cell: dict[int, float], baseline: dict[int, float]) -> Comparison:
     return Comparison(float(numpy.median(ratios)), low, high, len(common), verdict(interval))
 
 
+def compare_cells(cell: dict, baseline: dict) -> Comparison:
+    """compare() of two cells; without a ratio unless they were measured in turn, in one group."""
+    if cell["group"] != baseline["group"]:
+        return Comparison(None, None, None, 0, "ambiguous")
+    if cell is baseline:
+        return Comparison(1.0, None, None, 0, "baseline")
+    return compare(*(block_medians(c["samples"]["frame_ms"], c["samples"]["block"])
+                     for c in (cell, baseline)))
+
+
 def choose_baseline(methods: dict[str, str], medians_ms: dict[str, float]) -> str:
     """The id of the baseline among the cells of a group (id -> method, id -> median)."""
     blends = [cell for cell, method in methods.items() if method == "blend"]
@@ -129,22 +167,26 @@ def is_quantile(value: float, samples: Sequence[float], percent: float) -> bool:
     The definitions that Hyndman and Fan list differ by less than one rank to either side; the
     allowance of 1e-5 is for times written with six digits.
     """
-    ordered = numpy.sort(numpy.asarray(samples, dtype=float))
+    return _is_quantile_of_sorted(value, numpy.sort(numpy.asarray(samples, dtype=float)), percent)
+
+
+def _is_quantile_of_sorted(value: float, ordered: numpy.ndarray, percent: float) -> bool:
     rank = percent / 100 * len(ordered)
     last = len(ordered) - 1
-    low = ordered[min(max(int(numpy.floor(rank)) - 2, 0), last)]
-    high = ordered[min(int(numpy.ceil(rank)), last)]
+    low = ordered[min(max(math.floor(rank) - 2, 0), last)]
+    high = ordered[min(math.ceil(rank), last)]
     return bool(low * (1 - 1e-5) <= value <= high * (1 + 1e-5))
 
 
 def disagreements(cell: dict) -> list[str]:
     """Recorded statistics of the frame that its own samples contradict (empty if all is well)."""
     frame, samples = cell["statistics"]["frame"], cell["samples"]["frame_ms"]
+    ordered = numpy.sort(numpy.asarray(samples, dtype=float))
     quantiles = {"q1": 25, "median": 50, "q3": 75, "p95": 95, "min": 0, "max": 100}
     found = [
-        f"{key} {frame[key]:g} ms against {percentile(samples, percent):g} ms"
+        f"{key} {frame[key]:g} ms against {percentile(ordered, percent):g} ms"
         for key, percent in quantiles.items()
-        if not is_quantile(frame[key], samples, percent)
+        if not _is_quantile_of_sorted(frame[key], ordered, percent)
     ]
     if frame["count"] != len(samples):
         found.append(f"count {frame['count']} against {len(samples)}")

@@ -8,13 +8,15 @@ import pandas
 
 from . import formats
 from .formats import NOTHING
+from .labels import records
 from .sections import Section
 
 UNSETTLED = ("time_limit", "max_blocks")
 TERMINAL_WIDTH = 100
+NOTED = " ‡"  # beside a ratio that a note on the device qualifies (device_notes.toml)
 
 
-def describe(row: pandas.Series) -> dict[str, str]:
+def describe(row: dict) -> dict[str, str]:
     """The figures of one cell as text, by the names that the tables use."""
     if row["status"] != "ok":
         return {"frame": row["status"], "reason": row["reason"].strip() or "no reason given"}
@@ -24,7 +26,7 @@ def describe(row: pandas.Series) -> dict[str, str]:
     ratio = formats.with_interval(row["ratio"], row["ratio.low"], row["ratio.high"])
     return {
         "frame": frame + (" †" if row.get("stop.reason") in UNSETTLED else ""),
-        "ratio": "1" if row["verdict"] == "baseline" else ratio,
+        "ratio": "1" if row["verdict"] == "baseline" else ratio + (NOTED if row["device_note"] else ""),
         "verdict": row["verdict"],
         "rmse": formats.number(row.get("quality.rmse")),
         "psnr": formats.decibels(row.get("quality.psnr"), row.get("quality.rmse")),
@@ -39,7 +41,7 @@ def describe(row: pandas.Series) -> dict[str, str]:
     }
 
 
-def error_caption(row: pandas.Series) -> str:
+def error_caption(row: dict) -> str:
     """The error of an image in a few words, for its caption."""
     if not formats.is_number(row.get("quality.rmse")):
         return "not compared with a reference"
@@ -68,7 +70,7 @@ def terminal_table(section: Section) -> str:
     head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
     for _, cells in section.settings():
         lines += ["", *textwrap.wrap(setting_heading(cells), TERMINAL_WIDTH), head.rstrip()]
-        for _, row in cells.iterrows():
+        for row in records(cells):
             lines += _terminal_rows(row)
     return "\n".join(lines)
 
@@ -93,7 +95,7 @@ def setting_heading(cells: pandas.DataFrame) -> str:
     return " · ".join(parts)
 
 
-def _terminal_rows(row: pandas.Series) -> list[str]:
+def _terminal_rows(row: dict) -> list[str]:
     """One cell; a label that is too long goes on in the next line, nothing is cut off."""
     texts = describe(row)
     width = TERMINAL_COLUMNS[0][2]
@@ -146,7 +148,7 @@ def markdown_table(section: Section) -> str:
     rules = ["---" if i < first_figure or head == "verdict" else "---:"
              for i, (head, _) in enumerate(MARKDOWN_COLUMNS)]
     lines = [_markdown_row([head for head, _ in MARKDOWN_COLUMNS]), _markdown_row(rules)]
-    for _, row in section.table.iterrows():
+    for row in records(section.table):
         texts = describe(row)
         values = [row[name] for _, name in MARKDOWN_COLUMNS[:first_figure]]
         values += [texts.get(name, NOTHING) for _, name in MARKDOWN_COLUMNS[first_figure:]]

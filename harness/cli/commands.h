@@ -20,6 +20,6 @@ void addRender(CLI::App& program, Action& action);
 void addRun(CLI::App& program, Action& action);
 void addCompare(CLI::App& program, Action& action);
 void addDepth(CLI::App& program, Action& action);
-void addReport(CLI::App& program, Action& action);
+void addAnalysis(CLI::App& program, Action& action);
 
 }  // namespace oitlab

@@ -43,7 +43,7 @@ int runProgram(int argc, char** argv) {
   addRun(program, action);
   addCompare(program, action);
   addDepth(program, action);
-  addReport(program, action);
+  addAnalysis(program, action);
   try {
     program.parse(argc, argv);
     return action();

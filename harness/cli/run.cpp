@@ -2,29 +2,40 @@
 #include "cli/commands.h"
 #include "cli/device_options.h"
 #include "util/error.h"
+#include "util/size.h"
 
 namespace oitlab {
 namespace {
 
 struct RunOptions {
-  std::string file, results, shard = "1/1";
+  std::string file, results, shard = "1/1", profile = "auto", size;
+  float detail = 0;  // 0: as the file says
   bool dryRun = false;
   Device::Options device;
 };
 
-std::vector<CellSpec> cellsOf(const Experiment& experiment, const RunOptions& options) {
-  for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
-  return shardCells(experiment.cells, parseShard(options.shard));
-}
-
-int dryRun(const RunOptions& options, const std::filesystem::path& results) {
+/// The device that these options choose, without opening it.
+DeviceInfo chosenDevice(const Device::Options& options) {
   const auto devices = Device::listDevices();
-  const int index = options.device.index >= 0 ? options.device.index : Device::bestDevice(devices);
+  const int index = options.index >= 0 ? options.index : Device::bestDevice(devices);
   if (index < 0 || index >= int(devices.size()))
     throw DeviceError("no usable Vulkan device; see `oitlab info`");
-  const DeviceInfo& device = devices[std::size_t(index)];
-  const Experiment experiment = readExperiment(options.file, device.isCpu());
-  const auto cells = cellsOf(experiment, options);
+  return devices[std::size_t(index)];
+}
+
+/// "auto" is "cpu" on a device of that type, where the file has such a profile.
+ExperimentOptions readOptions(const RunOptions& options, const DeviceInfo& device) {
+  ExperimentOptions read;
+  const bool automatic = options.profile == "auto";
+  read.profile = automatic ? (device.type == "cpu" ? "cpu" : "full") : options.profile;
+  read.profileRequired = !automatic;
+  if (options.detail > 0) read.detail = options.detail;
+  if (!options.size.empty()) read.size = parseSize(options.size);
+  return read;
+}
+
+int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
+           const std::filesystem::path& results, const DeviceInfo& device) {
   std::size_t present = 0;
   for (const CellSpec& cell : cells) {
     const std::string id = cellId(cell, device);
@@ -40,18 +51,20 @@ int dryRun(const RunOptions& options, const std::filesystem::path& results) {
 }
 
 int run(const RunOptions& options) {
-  // Mistakes in the file are told before a device is looked for.
-  Experiment experiment = readExperiment(options.file);
+  readExperiment(options.file);  // mistakes are told before a device is looked for
+  parseShard(options.shard);
+  const DeviceInfo info = chosenDevice(options.device);
+  const Experiment experiment = readExperiment(options.file, readOptions(options, info));
   const std::filesystem::path results = options.results.empty()
                                             ? std::filesystem::path("results") / experiment.name
                                             : std::filesystem::path(options.results);
-  parseShard(options.shard);
-  if (options.dryRun) return dryRun(options, results);
+  const auto cells = shardCells(experiment.cells, parseShard(options.shard));
+  for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
+  if (options.dryRun) return dryRun(experiment, cells, results, info);
 
   const Device device(options.device);
-  if (device.info().isCpu()) experiment = readExperiment(options.file, true);
-  const auto cells = cellsOf(experiment, options);
-  fmt::print(stderr, "{}: {} cells on {}\n", experiment.title, cells.size(), device.info().name);
+  fmt::print(stderr, "{}: {} cells on {}, profile {}\n", experiment.title, cells.size(), info.name,
+             experiment.profile);
   const RunSummary summary = runExperiment(device, experiment, cells, results);
   fmt::print(stderr,
              "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
@@ -78,6 +91,19 @@ void addRun(CLI::App& program, Action& action) {
                    "Only the i-th of n shares; several may share a folder")
       ->capture_default_str()
       ->type_name("I/N");
+  verb->add_option("--profile", options->profile,
+                   "full, or a profile of the file; auto: cpu on a CPU device, else full")
+      ->capture_default_str()
+      ->type_name("NAME");
+  verb->add_option("--detail", options->detail,
+                   "Share of every generated scene's triangles, instead of what the file says")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->type_name("0..1");
+  verb->add_option("--size", options->size, "This image size, instead of those of the file")
+      ->check([](const std::string& text) {
+        return parseSize(text) ? "" : fmt::format("{}: wanted WxH, such as 1280x720", text);
+      })
+      ->type_name("WxH");
   verb->add_flag("--dry-run", options->dryRun, "List the cells and measure nothing");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return run(*options); }; });

@@ -8,8 +8,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Size = std::pair<std::uint32_t, std::uint32_t>;
-
 struct SceneChoice {
   SceneSpec spec;
   std::vector<std::string> views;  ///< empty: those of the sweep
@@ -25,10 +23,24 @@ struct MethodChoice {
 struct Axes {
   std::vector<SceneChoice> scenes;
   std::vector<std::string> views{"default"};
-  std::vector<Size> sizes{{1280, 720}};
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1280, 720}};
   std::vector<MethodChoice> methods;
   TargetFormat format = TargetFormat::rgba16f;
 };
+
+/// What reading a scene needs to know of the experiment around it.
+struct Context {
+  fs::path folder;
+  ExperimentOptions options;
+  float detail = 1.0f;  ///< of generated scenes, at most
+  std::vector<std::string> notes;
+};
+
+bool isGenerated(const std::string& source) {
+  const auto catalogue = sceneCatalogue();
+  return std::any_of(catalogue.begin(), catalogue.end(),
+                     [&](const SceneInfo& info) { return info.name == source; });
+}
 
 /// Names of generated scenes stay; paths are taken relative to the experiment's folder. A scene
 /// that is neither is said now, not when its turn comes after an hour of measuring.
@@ -48,12 +60,13 @@ std::string resolveSource(const TomlTable& owner, const toml::node& node, const 
   return resolved;
 }
 
-std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, const fs::path& folder,
-                                   std::vector<std::string>& notes) {
+std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, Context& context) {
+  const fs::path& folder = context.folder;
   SceneChoice choice;
   const toml::table* given = node.as_table();
   if (given == nullptr) {
     choice.spec.source = resolveSource(owner, node, owner.string(node, "a scene"), false, folder);
+    if (isGenerated(choice.spec.source)) choice.spec.detail = context.detail;
     return {choice};
   }
   TomlTable table(owner.file(), "a scene", *given);
@@ -62,6 +75,9 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, con
   const bool optional = table.value<bool>("optional", false);
   choice.spec.source = resolveSource(table, node, source, optional, folder);
   choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  if (isGenerated(choice.spec.source))
+    choice.spec.detail =
+        context.options.detail.value_or(std::min(choice.spec.detail, context.detail));
   for (const toml::node* view : table.list("views"))
     choice.views.push_back(table.string(*view, "a view"));
   std::vector<std::optional<float>> opacities;
@@ -74,7 +90,8 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, con
   }
   table.finish();
   if (optional && !fs::exists(choice.spec.source)) {
-    notes.push_back(fmt::format("optional scene {} is not there: left out", choice.spec.source));
+    context.notes.push_back(
+        fmt::format("optional scene {} is not there: left out", choice.spec.source));
     return {};
   }
   if (opacities.empty()) return {choice};
@@ -127,30 +144,27 @@ std::vector<MethodChoice> readMethod(TomlTable& owner, const toml::node& node) {
   }
 }
 
-std::vector<Size> readSizes(TomlTable& table) {
-  std::vector<Size> sizes;
-  for (const toml::node* node : table.list("sizes")) {
-    const std::string text = table.string(*node, "a size");
-    const auto size = parseSize(text);
-    if (!size) table.failAt(*node, fmt::format("size '{}': wanted WxH, such as 1280x720", text));
-    sizes.push_back(*size);
-  }
-  return sizes;
-}
-
-void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
-              std::vector<std::string>& notes) {
+void readAxes(TomlTable& table, Axes& axes, Context& context) {
   if (const auto scenes = table.list("scenes"); !scenes.empty()) {
     axes.scenes.clear();
     for (const toml::node* node : scenes)
-      for (SceneChoice& choice : readScene(table, *node, folder, notes))
+      for (SceneChoice& choice : readScene(table, *node, context))
         axes.scenes.push_back(std::move(choice));
   }
   if (const auto views = table.list("views"); !views.empty()) {
     axes.views.clear();
     for (const toml::node* node : views) axes.views.push_back(table.string(*node, "a view"));
   }
-  if (auto sizes = readSizes(table); !sizes.empty()) axes.sizes = std::move(sizes);
+  if (const auto sizes = table.list("sizes"); !sizes.empty()) {
+    axes.sizes.clear();
+    for (const toml::node* node : sizes) {
+      const std::string text = table.string(*node, "a size");
+      const auto size = parseSize(text);
+      if (!size) table.failAt(*node, fmt::format("size '{}': wanted WxH, such as 1280x720", text));
+      axes.sizes.push_back(*size);
+    }
+  }
+  if (context.options.size) axes.sizes = {*context.options.size};
   if (const auto methods = table.list("methods"); !methods.empty()) {
     axes.methods.clear();
     for (const toml::node* node : methods)
@@ -164,35 +178,6 @@ void readAxes(TomlTable& table, const fs::path& folder, Axes& axes,
       table.failAt(*node, error.what());
     }
   }
-}
-
-/// [cpu_device]: less of the same, so that a CPU device comes to the end. Its times say nothing
-/// about GPUs anyway; what is shown is that all of it runs, and how the images differ.
-struct CpuDevice {
-  std::vector<Size> sizes;  ///< instead of all others; empty: no change
-  float detail = 1.0f;      ///< of generated scenes, at most
-};
-
-CpuDevice readCpuDevice(TomlTable& root, const toml::node& node, MeasureSettings& settings) {
-  if (!node.is_table()) root.failAt(node, "'cpu_device' must be a table: [cpu_device]");
-  TomlTable table(root.file(), "[cpu_device]", *node.as_table());
-  CpuDevice cpu;
-  cpu.sizes = readSizes(table);
-  cpu.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
-  double& timeLimit = settings.stop.timeLimitSeconds;
-  timeLimit = table.number("time_limit", timeLimit, 0.01, 3600);
-  table.finish();
-  return cpu;
-}
-
-/// The same with less to do.
-Axes reduced(Axes axes, const CpuDevice& cpu) {
-  if (!cpu.sizes.empty()) axes.sizes = cpu.sizes;
-  for (SceneChoice& scene : axes.scenes)
-    for (const SceneInfo& generated : sceneCatalogue())
-      if (generated.name == scene.spec.source)
-        scene.spec.detail = std::min(scene.spec.detail, cpu.detail);
-  return axes;
 }
 
 void addProduct(const Axes& axes, std::set<std::string>& known, std::vector<CellSpec>& cells) {
@@ -221,6 +206,47 @@ void readMeasure(TomlTable& root, const toml::node& node, MeasureSettings& setti
   table.finish();
   if (stop.minBlocks > stop.maxBlocks || settings.minFrames > settings.maxFrames)
     root.failAt(node, "in [measure] a minimum is above its maximum");
+}
+
+/// Puts what [profile.NAME] says in place of what the file says at its top; tables such as
+/// [measure] key by key.
+void applyProfile(const std::string& file, toml::table& root, const ExperimentOptions& options,
+                  std::string& used) {
+  used = "full";
+  const toml::node* node = root.get("profile");
+  if (node && !node->is_table())
+    fail<InputError>("{}:{}: 'profile' must be tables: [profile.cpu]", file,
+                     node->source().begin.line);
+  std::vector<std::string> names;
+  if (node)
+    for (const auto& [name, table] : *node->as_table()) names.emplace_back(name.str());
+  if (options.profile == "full") return;
+  const bool there = std::find(names.begin(), names.end(), options.profile) != names.end();
+  if (!there && !options.profileRequired) return;
+  if (!there)
+    fail<InputError>("{}: no [profile.{}]{}; there are: full{}{}", file, options.profile,
+                     didYouMean(options.profile, names), names.empty() ? "" : ", ",
+                     joinNames(names));
+  toml::node& chosen = *root.get("profile")->as_table()->get(options.profile);
+  if (!chosen.is_table())
+    fail<InputError>("{}:{}: '{}' must be a table: [profile.{}]", file, chosen.source().begin.line,
+                     options.profile, options.profile);
+  TomlTable profile(file, fmt::format("[profile.{}]", options.profile), *chosen.as_table());
+  for (const char* key : {"scenes", "views", "sizes", "methods", "sweep", "detail", "measure"})
+    profile.find(key);
+  profile.finish();
+  for (auto&& [key, value] : *chosen.as_table()) {
+    // Moved, because copies of nodes forget their place in the file.
+    toml::table* target = root.get(key) ? root.get(key)->as_table() : nullptr;
+    if (toml::table* own = value.as_table(); own && target) {
+      for (auto&& [inner, given] : *own)
+        given.visit(
+            [&](auto& concrete) { target->insert_or_assign(inner.str(), std::move(concrete)); });
+    } else {
+      value.visit([&](auto& concrete) { root.insert_or_assign(key.str(), std::move(concrete)); });
+    }
+  }
+  used = options.profile;
 }
 
 }  // namespace
@@ -256,7 +282,7 @@ nlohmann::json CellSpec::identity() const {
   return json;
 }
 
-Experiment readExperiment(const fs::path& path, bool onCpu) {
+Experiment readExperiment(const fs::path& path, const ExperimentOptions& options) {
   const std::string file = path.string();
   toml::table root;
   try {
@@ -266,8 +292,12 @@ Experiment readExperiment(const fs::path& path, bool onCpu) {
     fail<InputError>("{}:{}:{}: {}", file, error.source().begin.line, error.source().begin.column,
                      error.description());
   }
-  TomlTable table(file, "the experiment", root);
   Experiment experiment;
+  applyProfile(file, root, options, experiment.profile);
+  if (options.detail) experiment.overrides["detail"] = *options.detail;
+  if (options.size) experiment.overrides["size"] = {options.size->first, options.size->second};
+  TomlTable table(file, "the experiment", root);
+  table.find("profile");  // applied, or not wanted
   experiment.name = table.value<std::string>("name", path.stem().string());
   experiment.title = table.value<std::string>("title", experiment.name);
   experiment.reference = table.value<std::string>("reference", experiment.reference);
@@ -279,31 +309,24 @@ Experiment readExperiment(const fs::path& path, bool onCpu) {
   experiment.measure.seed = std::uint64_t(table.number("seed", 1, 0, 1e15));
   if (const toml::node* node = table.find("measure")) readMeasure(table, *node, experiment.measure);
 
-  CpuDevice cpu;
-  if (const toml::node* node = table.find("cpu_device")) {
-    MeasureSettings measure = experiment.measure;
-    const CpuDevice given = readCpuDevice(table, *node, measure);
-    if (onCpu) {
-      cpu = given;
-      experiment.measure = measure;
-    }
-  }
-
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  Context context{path.has_parent_path() ? path.parent_path() : fs::path("."), options, 1.0f, {}};
+  context.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
+  if (options.detail) context.detail = *options.detail;
   Axes axes;
-  readAxes(table, folder, axes, experiment.notes);
+  readAxes(table, axes, context);
   const auto sweeps = table.list("sweep");
   table.finish();
   std::set<std::string> known;
-  addProduct(reduced(axes, cpu), known, experiment.cells);
+  addProduct(axes, known, experiment.cells);
   for (const toml::node* node : sweeps) {
     if (!node->is_table()) table.failAt(*node, "'sweep' must be tables: [[sweep]]");
     TomlTable sweep(file, "[[sweep]]", *node->as_table());
     Axes own = axes;
-    readAxes(sweep, folder, own, experiment.notes);
+    readAxes(sweep, own, context);
     sweep.finish();
-    addProduct(reduced(own, cpu), known, experiment.cells);
+    addProduct(own, known, experiment.cells);
   }
+  experiment.notes = std::move(context.notes);
   if (experiment.cells.empty() && experiment.notes.empty())
     fail<InputError>("{}: no cells: it needs 'scenes' and 'methods', at the top or in a [[sweep]]",
                      file);

@@ -69,6 +69,8 @@ json Run::header(const CellSpec& cell) const {
   content["schema"] = 1;
   content["id"] = cellId(cell, device_.info());
   content["experiment"] = experiment_.name;
+  content["profile"] = experiment_.profile;
+  if (!experiment_.overrides.empty()) content["overrides"] = experiment_.overrides;
   content["seed"] = experiment_.measure.seed;
   json group = cell.identity();
   group.erase("method");

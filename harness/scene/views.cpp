@@ -77,7 +77,7 @@ void addViews(Scene& scene, const std::filesystem::path& file, const toml::node*
 
 void addNamedViews(Scene& scene, const std::filesystem::path& file) {
   std::error_code ignored;
-  const std::filesystem::path shared = dataRoot() / "experiments" / "scenes.toml";
+  const std::filesystem::path shared = dataRoot() / "experiments" / "views.toml";
   if (std::filesystem::exists(shared, ignored)) {
     const toml::table document = parseFile(shared);
     if (!file.empty()) {

@@ -117,7 +117,7 @@ JUNK = (None, True, -1, 0, 1e300, 10**400, "", "text", "|<b>\n\x1b[31m", [], {},
 @pytest.mark.parametrize("seed", range(4))
 def test_junk_anywhere_in_a_cell_never_breaks_the_report(tmp_path, seed, monkeypatch):
     """Each cell of a folder gets one value replaced or removed; all of them must be survived."""
-    monkeypatch.setattr("oitlab_analysis.plots.save_charts", lambda sections, _: [[]] * len(sections))
+    monkeypatch.setattr("oitlab_analysis.plots.save_charts", lambda sections, *_: ([[]] * len(sections), 0))
     choose = random.Random(seed)
     write_cell(tmp_path, make_cell(scene="whole"))
     whole = make_cell(blocks=7, frames=1)

@@ -6,10 +6,10 @@ import matplotlib
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
-from oitlab_analysis import plots
+from oitlab_analysis import bars, plots, style
 from oitlab_analysis.cells import collect
 from oitlab_analysis.sections import add_comparisons, make_sections
-from synthetic import make_cell, make_results, without_measurement, write_cell
+from synthetic import make_cell, make_results, make_sweep, without_measurement, write_cell
 
 
 def section_of(folder):
@@ -18,8 +18,8 @@ def section_of(folder):
 
 
 def draw(section, kind, page=0):
-    with matplotlib.rc_context(plots.STYLE):
-        figure = plots.DRAWN[kind][1](section, plots.paginate(section)[page])
+    with matplotlib.rc_context(style.STYLE):
+        figure = plots.KINDS[kind].draw(section, page, "rmse")
         FigureCanvasAgg(figure).draw()
     return figure
 
@@ -63,18 +63,18 @@ def section(request, tmp_path_factory):
     return section_of(folder)
 
 
-@pytest.mark.parametrize("kind", ["frame-times", "stages"])
+@pytest.mark.parametrize("kind", ["frame-times", "stages", "memory"])
 def test_nothing_overlaps(section, kind):
-    for page in range(len(plots.paginate(section))):
+    for page in range(len(bars.paginate(section))):
         assert_nothing_overlaps(draw(section, kind, page))
 
 
 def test_pages_hold_every_cell_once(section):
-    pages = plots.paginate(section)
+    pages = bars.paginate(section)
     cells = [identity for page in pages for _, cells in page for identity in cells["id"]]
     assert sorted(cells) == sorted(section.table["id"])
     lengths = [sum(len(cells) for _, cells in page) for page in pages]
-    assert max(lengths) <= plots.BARS_PER_CHART * 1.2 and max(lengths) < 3 * min(lengths)
+    assert max(lengths) <= bars.BARS_PER_CHART * 1.2 and max(lengths) < 3 * min(lengths)
 
 
 def test_bars_end_at_the_medians_and_intervals_at_their_ends(tmp_path):
@@ -92,7 +92,7 @@ def test_bars_end_at_the_medians_and_intervals_at_their_ends(tmp_path):
 def test_stages_are_stacked_to_their_sum(tmp_path):
     section = section_of(make_results(tmp_path, 2, 1))
     axes = draw(section, "stages").axes[0]
-    columns = plots.stage_columns(section.table)
+    columns = bars.stage_columns(section.table)
     ends = {}
     for bar in axes.patches:
         row = round(bar.get_y() + bar.get_height() / 2)
@@ -113,7 +113,7 @@ def test_log_scale_beyond_a_span_of_30(tmp_path, slow, scale):
 
 
 def test_methods_are_told_apart_by_colour_and_also_without(tmp_path):
-    styles = plots.method_styles(section_of(make_results(tmp_path, 6, 1)).table)
+    styles = bars.method_styles(section_of(make_results(tmp_path, 6, 1)).table)
     colours = {label: colour for label, (colour, _) in styles.items()}
     assert len({hatch for _, hatch in styles.values()}) == 6
     assert colours["lucid (tile=8)"] == colours["lucid (tile=16)"]
@@ -128,7 +128,7 @@ def test_colours_are_far_apart_also_for_the_red_green_blind():
         same = 0.293 * red + 0.707 * green
         return same, same, -0.022 * red + 0.022 * green + blue
 
-    for one, two in itertools.combinations(plots.COLOURS[:5], 2):
+    for one, two in itertools.combinations(style.COLOURS[:5], 2):
         assert sum((a - b) ** 2 for a, b in zip(seen(one), seen(two))) ** 0.5 > 0.1, (one, two)
 
 
@@ -138,11 +138,15 @@ def test_a_dollar_in_a_name_is_drawn_as_it_is(tmp_path):
     assert axes.get_yticklabels()[0].get_text() == "$\\frac{$"
 
 
-def test_saved_charts_exist_as_png_and_svg_and_are_reproducible(tmp_path):
+def test_saved_charts_exist_as_png_svg_and_pdf_and_are_reproducible(tmp_path):
     section = section_of(make_results(tmp_path, 2, 1))
-    charts = plots.save_charts([section], tmp_path / "plots")[0]
+    (tmp_path / "plots").mkdir()
+    (tmp_path / "plots" / "stages-7.png").write_text("of an earlier report")
+    (tmp_path / "plots" / "mine.png").write_text("of the user")
+    charts = plots.save_charts([section], tmp_path / "plots")[0][0]
+    (tmp_path / "plots" / "mine.png").unlink()
     first = {p.name: p.read_bytes() for p in (tmp_path / "plots").iterdir()}
-    assert set(first) == {f"{chart.name}.{kind}" for chart in charts for kind in ("png", "svg")}
+    assert set(first) == {f"{chart.name}.{kind}" for chart in charts for kind in ("png", "svg", "pdf")}
     plots.save_charts([section], tmp_path / "plots")
     assert first == {p.name: p.read_bytes() for p in (tmp_path / "plots").iterdir()}
 
@@ -153,10 +157,22 @@ def test_a_page_of_failed_cells_only_is_drawn(tmp_path):
         cell = make_cell("zzz", parameters={"size": number})
         write_cell(tmp_path, without_measurement(cell, "failed", "lost"))
     section = section_of(tmp_path)
-    figure = draw(section, "frame-times", page=len(plots.paginate(section)) - 1)
+    figure = draw(section, "frame-times", page=len(bars.paginate(section)) - 1)
     assert len(figure.axes[0].texts) == 70 and not figure.axes[0].patches
 
 
 def test_no_chart_where_nothing_was_measured(tmp_path):
     write_cell(tmp_path, without_measurement(make_cell(), "failed", "lost"))
-    assert plots.save_charts([section_of(tmp_path)], tmp_path / "plots") == [[]]
+    assert plots.save_charts([section_of(tmp_path)], tmp_path / "plots") == ([[]], 0)
+
+
+def test_only_so_many_charts_are_drawn_unless_all_are_wanted(tmp_path, monkeypatch):
+    monkeypatch.setattr(plots, "save", lambda figure, path: None)
+    section = section_of(make_sweep(tmp_path, 160, blocks=7, frames=1))
+    some, left_out = plots.save_charts([section], tmp_path / "plots")
+    every, none = plots.save_charts([section], tmp_path / "plots", everything=True)
+    assert len(some[0]) == plots.MOST_CHARTS and none == 0
+    assert len(every[0]) == plots.MOST_CHARTS + left_out > plots.MOST_CHARTS
+    kinds = {chart.name.split("-1")[0] for chart in some[0]}
+    wanted = {kind for kind in plots.KINDS if not kind.startswith("bma")}
+    assert kinds == wanted, "the first chart of every kind is among them"

@@ -1,6 +1,5 @@
 """The report from end to end, on synthetic results."""
 
-import base64
 import csv
 import io
 import json
@@ -13,7 +12,7 @@ from html.parser import HTMLParser
 import numpy
 import pytest
 from program import ROOT
-from oitlab_analysis.images import preview
+from oitlab_analysis.images import smaller
 from oitlab_analysis.report import make_report
 from PIL import Image
 from synthetic import (DEVICE, LAVAPIPE, make_cell, make_results, without_measurement, write_cell,
@@ -32,10 +31,15 @@ def html_of(folder):
     return (folder / "report.html").read_text(encoding="utf-8")
 
 
+def embedded_pictures(html):
+    data = re.search(r'<script type="application/json" id="picture-data">(.*?)</script>', html, re.S)
+    return json.loads(data[1])
+
+
 class Page(HTMLParser):
     """What a test needs of a page: its resources, its table and whether its tags match."""
 
-    VOID = {"meta", "img", "br", "link"}
+    VOID = {"meta", "img", "br", "link", "input"}
 
     def __init__(self, text):
         super().__init__()
@@ -80,7 +84,7 @@ def results(tmp_path_factory):
 @pytest.fixture(autouse=True)
 def without_charts(monkeypatch):
     """Charts take most of the time of a report; `results` and `run` make them all the same."""
-    monkeypatch.setattr("oitlab_analysis.plots.save_charts", lambda sections, _: [[]] * len(sections))
+    monkeypatch.setattr("oitlab_analysis.plots.save_charts", lambda sections, *_: ([[]] * len(sections), 0))
 
 
 @pytest.fixture
@@ -129,8 +133,12 @@ def test_help_says_what_is_written_and_the_exit_codes():
 
 
 def test_page_is_self_contained_and_well_formed(results, page):
-    assert len(page.sources) == 8 + 2  # images and charts
-    assert all(source.startswith("data:image/") for source in page.sources)
+    assert len(page.sources) == 5  # charts: quality against speed (2), times, stages, memory
+    assert all(source.startswith("data:image/svg+xml") for source in page.sources)
+    pictures = embedded_pictures((results / "report.html").read_text(encoding="utf-8"))
+    # Those of the two exact methods are the same, bit for bit, in each of the two scenes.
+    assert len(pictures) == 2 * 3
+    assert all(p["uri"].startswith("data:image/png") and p["scale"] == 1 for p in pictures.values())
     assert not [link for link in page.links if ":" in link]
     for link in page.links:
         assert link.startswith("#") or (results / link).is_file()
@@ -171,7 +179,7 @@ def test_markdown_table_is_regular_and_its_links_lead_somewhere(results):
     assert len(table) == 2 + 10
     assert {len(re.findall(r"(?<!\\)\|", line)) for line in table} == {17}
     links = re.findall(r"!\[[^\]]*\]\(([^)]*)\)", markdown)
-    assert len(links) == 8 + 2
+    assert len(links) == 8 + 5
     assert all((results / link).is_file() for link in links)
     assert "device lost" in markdown and "needs fragment interlock" in markdown
     assert "oitlab run experiments/quickstart.toml" in markdown
@@ -286,10 +294,27 @@ def test_cells_that_nothing_tells_apart_are_numbered(tmp_path):
     assert re.search(r"^blend  ", text, re.M) and re.search(r"^blend #2  ", text, re.M)
 
 
-def test_wide_images_become_smaller_copies(tmp_path):
-    write_cell(tmp_path, make_cell(size=(2000, 1000)))
+def test_wide_images_become_smaller_copies(tmp_path, monkeypatch):
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 1_000_000)
+    write_cell(tmp_path, make_cell(size=(2000, 1000)), image=False)
+    write_image(tmp_path / make_cell(size=(2000, 1000))["image"]["file"], 2000, 1000, detail=8)
+    picture, = embedded_pictures(html_of(tmp_path)).values()
+    assert (picture["width"], picture["height"]) == (2000, 1000)
+    assert picture["scale"] == pytest.approx(2000 / 1280, rel=1e-3)
+    assert picture["uri"].startswith("data:image/jpeg")
+
+
+def test_pictures_of_a_big_report_share_the_room_there_is(tmp_path, monkeypatch):
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 60_000)
+    for number in range(6):
+        cell = make_cell(method=f"m{number}", size=(400, 300), rmse=0.1)
+        write_cell(tmp_path, cell, image=False)
+        write_image(tmp_path / cell["image"]["file"], 400, 300, cell["image_hash"], detail=60)
     text = html_of(tmp_path)
-    assert 'width="800" height="400"' in text and "data:image/jpeg" in text
+    pictures = embedded_pictures(text)
+    assert len(pictures) == 6 and all(p["scale"] > 1.5 for p in pictures.values())
+    assert sum(len(p["uri"]) for p in pictures.values()) < 60_000 * 1.4
+    assert "6 of 6 pictures are smaller copies" in text
 
 
 @pytest.mark.parametrize("kind, said", [("missing", "is missing"), ("cut", "cannot be read"),
@@ -319,12 +344,54 @@ def test_an_unscored_image_is_not_called_equal(tmp_path):
     assert "(equal)" not in text and "equal to the reference</figcaption>" not in text
 
 
-def test_preview_averages_the_pixels_that_it_drops(tmp_path):
+def test_pictures_never_take_more_than_their_room(tmp_path, monkeypatch):
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 12_000)  # for two of the smallest copies
+    for number in range(6):
+        cell = make_cell(method=f"m{number}", size=(400, 300), rmse=0.1)
+        write_cell(tmp_path, cell, image=False)
+        write_image(tmp_path / cell["image"]["file"], 400, 300, cell["image_hash"], detail=60)
+    text = html_of(tmp_path)
+    pictures = embedded_pictures(text)
+    assert 0 < len(pictures) < 6
+    assert sum(len(p["uri"]) for p in pictures.values()) < 12_000 * 1.4
+    assert f"{6 - len(pictures)} did not fit into the page" in text
+
+
+def test_a_picture_that_cells_share_takes_its_room_once(tmp_path, monkeypatch):
+    for number in range(5):
+        write_cell(tmp_path, make_cell(method=f"exact{number}", rmse=0.0))
+    size = next((tmp_path / "images").iterdir()).stat().st_size
+    write_cell(tmp_path, make_cell(method="other", rmse=0.1))
+    monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 2 * size + 20)
+    text = html_of(tmp_path)
+    assert len(embedded_pictures(text)) == 2 and "did not fit" not in text
+
+
+def test_a_copy_averages_the_pixels_that_it_drops():
     y, x = numpy.mgrid[0:900, 0:1600]
     board = ((x + y) % 2 * 255).astype(numpy.uint8)  # a fine chequer: grey from afar
     board[:, 800:] = 0
-    Image.fromarray(board).save(tmp_path / "a b.png")
-    found = preview(tmp_path, "a b.png")
-    shown = numpy.asarray(Image.open(io.BytesIO(base64.b64decode(found.uri.split(",")[1]))), int)
-    assert (shown.shape, found.link) == ((450, 800, 3), "a%20b.png")
+    file = io.BytesIO()
+    Image.fromarray(board).save(file, "PNG")
+    shown = numpy.asarray(Image.open(io.BytesIO(smaller(file.getvalue(), 800))), int)
+    assert shown.shape == (450, 800, 3)
     assert numpy.abs(shown[:, :390] - 127.5).max() < 3 and shown[:, 410:].max() < 3
+
+
+def test_a_device_note_stands_beside_every_ratio_to_blend(tmp_path):
+    h200 = DEVICE | {"name": "NVIDIA H200"}
+    make_results(tmp_path, methods=3, scenes=2, device=h200)
+    result = make_report(tmp_path)
+    ratios = [line for line in result.text.splitlines() if line.startswith(("wboit", "reference"))]
+    assert len(ratios) == 4 and all("‡" in line for line in ratios)
+    assert "2 of its 66 TPCs" in " ".join(result.text.split())
+    for file in ("report.html", "report.md"):
+        text = (tmp_path / file).read_text(encoding="utf-8")
+        assert text.count(" ‡") >= 4 and "2 of its 66 TPCs" in text
+    with open(tmp_path / "cells.csv", encoding="utf-8", newline="") as file:
+        assert sum("TPCs" in row["device_note"] for row in csv.DictReader(file)) == 6
+
+
+def test_other_devices_have_no_such_note(tmp_path):
+    make_results(tmp_path, methods=3, scenes=1)
+    assert "‡" not in make_report(tmp_path).text

@@ -158,3 +158,24 @@ def test_report_of_a_run(oitlab, tiny, tmp_path):
     page = (results / "report.html").read_text()
     assert "data:image/" in page and "http" + "s://" not in page.split("<body")[1]
     assert os.path.getsize(results / "plots" / "frame-times-1.png") > 0
+
+
+def test_cells_say_which_profile_and_overrides_they_were_measured_with(oitlab, tmp_path):
+    experiment = tmp_path / "p.toml"
+    experiment.write_text('scenes = ["boxes"]\nmethods = ["blend"]\nsizes = ["64x36"]\n'
+                          "[measure]\ntime_limit = 0.1\n"
+                          '[profile.cpu]\nsizes = ["32x18"]\ndetail = 0.03\n')
+    device = json.loads(oitlab("info", "--json").stdout)["devices"]
+    automatic = "cpu" if next(d for d in device if d["best"])["type"] == "cpu" else "full"
+    for arguments, profile, size, overrides in (
+            ([], automatic, [32, 18] if automatic == "cpu" else [64, 36], None),
+            (["--profile", "full"], "full", [64, 36], None),
+            (["--profile", "cpu", "--size", "16x9", "--detail", "0.05"], "cpu", [16, 9],
+             {"detail": pytest.approx(0.05), "size": [16, 9]})):
+        results = tmp_path / f"results{len(arguments)}"
+        done = oitlab("run", experiment, "--results", results, *arguments)
+        assert done.returncode == 0, done.stderr
+        assert f"profile {profile}" in done.stderr
+        cell, = cells(results).values()
+        assert (cell["profile"], cell["size"], cell.get("overrides")) == (profile, size, overrides)
+    assert cell["scene"]["detail"] == pytest.approx(0.05)

@@ -13,10 +13,10 @@ def parse(done):
 def test_help_of_the_program_and_of_every_verb(oitlab):
     done = oitlab("--help")
     assert done.returncode == 0
-    for verb in ("info", "list", "render", "run", "compare", "report"):
+    for verb in ("info", "list", "render", "run", "compare", "report", "diff", "paper", "pack"):
         assert verb in done.stdout
         help_text = oitlab(verb, "--help")
-        assert help_text.returncode == 0 and "Usage" in help_text.stdout
+        assert help_text.returncode == 0 and "usage" in help_text.stdout.lower()
 
 
 def test_info_tells_devices_and_what_methods_lack(oitlab):

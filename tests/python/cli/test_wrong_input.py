@@ -33,6 +33,10 @@ BAD_INPUT = [
     (["run", "nowhere.toml"], ["nowhere.toml"]),
     (["run", "nowhere.toml", "--shard", "5/4"], ["nowhere.toml"]),
     (["report", "nowhere"], ["nowhere"]),
+    (["diff", "nowhere", "nowhere"], ["nowhere"]),
+    (["paper", "nowhere"], ["nowhere"]),
+    (["pack", "nowhere", "x.json.gz"], ["nowhere"]),
+    (["run", "nowhere.toml", "--size", "8"], ["--size", "8: wanted WxH"]),
     (["compare", "a.png", "nowhere.png"], ["a.png"]),
     (["list", "metods"], ["did you mean 'methods'"]),
 ]

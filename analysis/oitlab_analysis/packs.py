@@ -1,0 +1,73 @@
+"""Raw cells as small files: `*.json.gz`, one cell each, or all cells of a folder in one pack.
+
+A pack is {"schema": 1, "pack": "oitlab cells", "cells": [cell, ...]}, compressed. The cells are kept
+as they are, with every sample; pictures are not packed.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import zlib
+from pathlib import Path
+
+from .checks import NotACell, cell_of
+
+PACK_SUFFIX = ".json.gz"
+PACK = "oitlab cells"
+# A cell of 100,000 samples takes about 5 MB. What unpacks to more than this is no results file.
+LARGEST = 1 << 30
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of a file that may be a cell, unpacked. Raises NotACell."""
+    if not path.name.endswith((".json", PACK_SUFFIX)) or path.name.startswith("."):
+        raise NotACell("a temporary file of a running or killed run, or a foreign one")
+    try:
+        if path.suffix == ".json":
+            return path.read_bytes()
+        with gzip.open(path) as file:
+            content = file.read(LARGEST + 1)
+    except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+        raise NotACell(f"half-written or not compressed JSON: {error}") from error
+    except OSError as error:
+        raise NotACell(f"cannot be read: {error.strerror}") from error
+    if len(content) > LARGEST:
+        raise NotACell(f"unpacks to more than {LARGEST >> 20} MiB")
+    return content
+
+
+def read_pack(path: Path) -> list[bytes | dict]:
+    """The cells of a pack, unchecked; a compressed cell is a pack of one. Raises NotACell."""
+    content = read_bytes(path)
+    try:
+        document = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise NotACell(f"half-written or not JSON: {error}") from error
+    if not isinstance(document, dict) or document.get("pack") != PACK:
+        return [content]
+    cells = document.get("cells")
+    if document.get("schema") != 1 or not isinstance(cells, list):
+        raise NotACell("not a pack of cells that this version can read")
+    return cells
+
+
+def write_pack(results: Path, target: Path) -> tuple[int, list[str]]:
+    """Packs the cells of a results folder; returns how many, and what was left out and why.
+
+    The same cells give the same file. Raises OSError.
+    """
+    cells, left_out = [], []
+    for path in sorted((results / "cells").iterdir()):
+        try:
+            content = read_bytes(path)
+            cell_of(content)
+            cells.append(json.loads(content))
+        except NotACell as error:
+            left_out.append(f"{path.name}: {error}")
+    if cells:
+        text = json.dumps({"schema": 1, "pack": PACK, "cells": cells}, separators=(",", ":"),
+                          ensure_ascii=False)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(gzip.compress(text.encode("utf-8"), mtime=0))
+    return len(cells), left_out

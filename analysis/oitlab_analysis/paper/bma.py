@@ -1,0 +1,129 @@
+"""Tables 1 and 2 and figures 3, 5, 7 and 9 of "Backwards Memory Allocation and Improved OIT" (Knowles,
+Leach and Zambetta 2013). The figures, and the speed-up of each interval, are worked out in
+`oitlab_analysis.bma`."""
+
+from __future__ import annotations
+
+import pandas
+from matplotlib.figure import Figure
+
+from ..cells import as_table
+from .agreement import factor, order
+from .common import (build, columns, file_name, general_notes, head, pairs_of, published, size_of,
+                     without_ratios)
+from .measured import Context, Measurements, Want, choose, find, ratio
+from .published import STAND_INS, read
+from .table import Column, Number, Table
+
+try:
+    from .. import bma as analysis
+except ImportError:  # the module comes with the method `abuffer`
+    analysis = None
+
+FIGURES = (3, 5, 7, 9)
+# What the paper's OIT and BMA-OIT are, beside how much memory they sort in.
+CHOICES = {"sort": "auto", "mask": "stencil", "deep": "exact", "on_overflow": "grow",
+           "node_color": "rgba32f", "local": "keys"}
+COMMAND = "oitlab run experiments/bma.toml"
+
+
+def table2(found: Measurements, device: str) -> Table:
+    """OIT with fixed allocation against BMA-OIT at the same maximum."""
+    paper = read("bma_table2")
+
+    def rows_of(context: Context) -> tuple[list[dict], list[dict]]:
+        rows, used = [], []
+        for line in paper:
+            allocated = int(line["max_alloc"])
+            row = {"scene": f"{line['scene']}, {allocated}", "p.fragments": Number(float(line["fragments"]) / 1e6),
+                   "p.peak": published(line["peak_depth"]), "p.oit": published(line["oit_ms"]),
+                   "p.bma": published(line["bma_oit_ms"]), "p.speedup": published(line["speedup"])}
+            wants = {memory: Want("abuffer", CHOICES | {"sort_memory": memory, "max_fragments": allocated})
+                     for memory in ("max", "bma")}
+            cells = find(context, STAND_INS[line["scene"]], wants, size_of(line["size"]), "bma", "bma")
+            for role, key in (("max", "m.oit"), ("bma", "m.bma")):
+                if role in cells:
+                    row[key] = Number(cells[role]["statistics"]["frame"]["median"])
+            if cells:
+                counters = cells["bma"]["counters"]
+                row["m.fragments"] = Number(counters.get("fragments", 0) / 1e6)
+                if "max_fragments_per_pixel" in counters:
+                    row["m.peak"] = Number(counters["max_fragments_per_pixel"])
+            if compared := ratio(cells, "max", "bma"):
+                row["m.speedup"] = Number(compared.ratio, compared.low, compared.high)
+            used += cells.values()
+            rows.append(row)
+        return rows, used
+
+    context, rows, used, others = build("bma", rows_of, found, device)
+    metrics = [("fragments", "fragments, M"), ("peak", "peak depth"), ("oit", "OIT, ms"), ("bma", "BMA-OIT, ms"),
+               ("speedup", "speed-up")]
+    agreement, notes = [], []
+    if context:
+        agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
+                                 factor("Speed-up", pairs_of(rows, "speedup"))) if s]
+        notes = without_ratios(general_notes(context, used, others, paper[0]["size"]))
+    return Table(
+        name=f"bma-table2-{file_name(device)}", title="BMA: fixed allocation (OIT) against BMA-OIT",
+        source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
+        columns=[Column("scene", "scene, max alloc")] + columns(metrics, paper[0]["device"], device),
+        rows=rows, measured_on=head(context, used), agreement=agreement, notes=notes,
+        missing=[row["scene"] for row in rows if not row.get("m.speedup")], command=COMMAND,
+    )
+
+
+def cells_of(found: Measurements, device: str, method: str) -> tuple[Context | None, pandas.DataFrame | None]:
+    """The context with most measured cells of a method, and their table."""
+    def count(context: Context) -> int:
+        return sum(c["method"] == method and c["status"] == "ok" for c in context.cells)
+
+    context = choose(found.of(device), count)
+    return (context, as_table({c["id"]: c for c in context.cells})) if context else (None, None)
+
+
+def table1(found: Measurements, device: str) -> Table:
+    """The speed-up of each interval of fragment counts."""
+    paper = read("bma_table1")
+    context, cells = cells_of(found, device, "abuffer")
+    measured = analysis.bma_table1(cells) if analysis and cells is not None else None
+    rows = []
+    for line in paper:
+        value = speedup_in(measured, STAND_INS[line["scene"]], int(line["interval"]))
+        rows.append({"scene": f"{line['scene']}, {line['interval']}", "p.speedup": published(line["speedup"]),
+                     "m.speedup": Number(value) if value is not None else None})
+    agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
+                             factor("Speed-up", pairs_of(rows, "speedup"))) if s]
+    return Table(
+        name=f"bma-table1-{file_name(device)}", title="BMA: estimated speed-up at each interval",
+        source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
+        columns=[Column("scene", "scene, interval")] + columns([("speedup", "speed-up")], paper[0]["device"], device),
+        rows=rows, measured_on=context.describe() if context else "nothing yet", agreement=agreement,
+        notes=without_ratios(general_notes(context, [], 0, "1680x1050"))
+        if context else [],
+        missing=[row["scene"] for row in rows if not row.get("m.speedup")], command=COMMAND,
+    )
+
+
+def speedup_in(measured: pandas.DataFrame | None, scene: str, interval: int) -> float | None:
+    """A cell of what bma_table1() gives: one row an interval, one column a scene, whose name starts
+    with that of the scene."""
+    if measured is None or interval not in measured.index:
+        return None
+    for column in measured.columns:
+        if column.split(" ")[0].rstrip(",") == scene and pandas.notna(measured.loc[interval, column]):
+            return float(measured.loc[interval, column])
+    return None
+
+
+def figures(found: Measurements, device: str) -> list[tuple[str, str, Figure | None]]:
+    """(name, what the paper's figure says, the measured one or None) for each figure."""
+    says = {row["figure"]: row["says"] for row in read("bma_figures")}
+    _, cells = cells_of(found, device, "abuffer")
+    _, local = cells_of(found, device, "local_memory")
+    result = []
+    for number in FIGURES:
+        draw = getattr(analysis, f"bma_figure{number}", None)
+        table = local if number == 3 and local is not None else cells
+        drawn = draw(table) if draw and table is not None else None
+        result.append((f"bma-figure{number}-{file_name(device)}", says[f"Figure {number}"], drawn))
+    return result
