@@ -89,7 +89,7 @@ class Lucid : public Method {
       fail<DeviceError>(
           "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
           "long "
-          "loops early (too many triangles in a bin, or too few workgroups for the scene)",
+          "loops early (too many triangles in a bin)",
           c.walked, c.expected, c.blended, toBlend, device_->info().name);
     if (c.repairJobs > repairCapacity_) {
       makeRoomForRepairs(withSlack(c.repairJobs));
@@ -162,8 +162,7 @@ class Lucid : public Method {
 
   LucidPush pushOf(const Frame& frame) const {
     const raster::RasterPush front = frontEnd_->addresses(frame);
-    std::uint32_t flags = std::uint32_t(parameters_.integer("workgroups")) << FLAG_BITS;
-    if (frame.instrumented) flags |= COUNT_SAMPLES;
+    std::uint32_t flags = frame.instrumented ? COUNT_SAMPLES : 0u;
     // Without it invalid pixels stay; lists too long to be sorted elsewhere are the repair's even
     // so.
     if (repairs()) flags |= REPAIR;
@@ -288,9 +287,6 @@ const RegisterMethod registered({
          flag("visualize_errors", false, "paint pixels whose order went wrong red"),
          flag("backface_culling", false,
               "drop quads that face away, which no other method does: for the scene table"),
-         integer("workgroups", 0, 0, 65535,
-                 "most workgroups of the raster stage, each going on to the next half-block; "
-                 "0: one for each share of the work"),
          flag("poison", false, "fill all buffers with rubbish before each frame: a test")},
     .features = {"subgroupSizeControl", "computeFullSubgroups"},
     .make = [] { return std::make_unique<Lucid>(); },

@@ -191,21 +191,15 @@ void main() {
 #else
   const uint count = push.counters.c.shortLists;
 #endif
-  // One turn each, unless `workgroups` says otherwise. Barriers of the whole workgroup part the turns:
-  // subgroups that lag behind, or lanes of one, would find the next half-block in shared memory.
-  const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  // One turn a workgroup: which is next is left to the device, where the paper has persistent threads.
   const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  for (uint first = group * TEAMS; first < count; first += groups * TEAMS) {
-    const uint i = first + gl_SubgroupID;
-    if (i < count) {
+  const uint i = group * TEAMS + gl_SubgroupID;
+  if (i >= count) return;
 #if HIGH
-      const HalfBlock block = push.blocks.at[columns * rows * HALF_BLOCKS - 1u - i];
-      if (block.count > LIST) handOver(block);
-      else blendHalfBlock(block);
+  const HalfBlock block = push.blocks.at[columns * rows * HALF_BLOCKS - 1u - i];
+  if (block.count > LIST) handOver(block);
+  else blendHalfBlock(block);
 #else
-      blendHalfBlock(push.blocks.at[i]);
+  blendHalfBlock(push.blocks.at[i]);
 #endif
-    }
-    barrier();
-  }
 }

@@ -147,9 +147,8 @@ void makeLists(uint number) {
   }
 }
 
-// As many workgroups, or `cap` of them, in rows that every device can dispatch.
-Dispatch dispatchOf(uint groups, uint cap) {
-  if (cap != 0u) return Dispatch(min(groups, cap), 1u, 1u);
+// As many workgroups, in rows that every device can dispatch.
+Dispatch dispatchOf(uint groups) {
   return Dispatch(min(groups, MAX_GROUPS), (groups + MAX_GROUPS - 1u) / MAX_GROUPS, 1u);
 }
 
@@ -172,11 +171,10 @@ void main() {
   if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < groups) return;
   // The last workgroup to end, of either kind, knows all counts.
   const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
-  const uint cap = push.flags >> FLAG_BITS;
   const uint lowGroups = (atomicAdd(push.counters.c.shortLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
   const uint highGroups = atomicAdd(push.counters.c.longLists, 0u);
-  push.counters.c.low = dispatchOf(ready ? lowGroups : 0u, cap);
-  push.counters.c.high = dispatchOf(ready ? highGroups : 0u, cap);
+  push.counters.c.low = dispatchOf(ready ? lowGroups : 0u);
+  push.counters.c.high = dispatchOf(ready ? highGroups : 0u);
   push.counters.c.repair = Dispatch(0u, 1u, 1u);
   push.counters.c.deep = Dispatch(0u, 1u, 1u);
   push.counters.c.deepResolve = Dispatch(0u, 1u, 1u);

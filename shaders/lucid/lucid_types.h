@@ -27,7 +27,6 @@ using namespace oitlab::raster;
 #define COUNT_SAMPLES 1u
 #define REPAIR 2u
 #define SHOW_ERRORS 4u
-#define FLAG_BITS 4       // above: the cap on workgroups, 0 for none
 
 // The part of a triangle in one half-block: tri-half-block.
 struct TriHalfBlock {
