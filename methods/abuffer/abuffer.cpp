@@ -78,6 +78,11 @@ class Abuffer : public Method {
       again = true;
     }
     if (again) return {.recordAgain = true};
+    if (c.broken > 0)
+      fail<DeviceError>(
+          "abuffer: the lists of {} pixels do not end as lists do, or {} does not carry out the "
+          "shaders' loops in full (a pixel may be too deep for it)",
+          c.broken, device_->info().name);
     return {.counters = countersOf(c)};
   }
 

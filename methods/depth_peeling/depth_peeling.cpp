@@ -89,6 +89,7 @@ class DepthPeeling : public Method {
       resolve_.bind(frame.commands, frame.bindings);
       resolve_.push(frame.commands, push);
       frame.dispatchPixels();
+      frame.barrier(Stage::eComputeShader, Stage::eTransfer);
       frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
                                 vk::BufferCopy(0, 0, sizeof(PeelCounters)));
       frame.commands.copyBuffer(draws_.vk(), drawsReadback_.vk(), vk::BufferCopy(0, 0, drawBytes));
@@ -118,6 +119,9 @@ class DepthPeeling : public Method {
       allocateList(counters.back + counters.back / 16ull);
       return {.recordAgain = true};
     }
+    if (counters.broken > 0)
+      fail<DeviceError>("depth_peeling: the lists of {} pixels do not end as lists do",
+                        counters.broken);
     recorded_ = asked;  // of the next frame, until it asks for more
 
     const std::uint32_t blending = asked - 1;

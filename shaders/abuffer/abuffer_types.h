@@ -34,6 +34,7 @@ struct Counters {
   uint deepPixels;  // of more fragments than max_fragments, or than a stencil can count
   Groups deepGroups;
   uint unfinished;  // deep pixels whose sort wants more rounds than were recorded
+  uint broken;      // deep pixels whose list is not one: none, or the method is at fault
   // Of instrumented frames, from the tallies (tally.comp).
   uint blended;             // fragments
   uint deepest;             // most fragments of one pixel
@@ -104,6 +105,9 @@ struct Push {
 }  // namespace oitlab::abuffer
 #else
 layout(push_constant, scalar) uniform PushBlock { Push push; };
+
+// Nodes that are in lists: indices below it.
+uint nodesInLists() { return min(push.counters.c.fragments, push.capacity); }
 #endif
 
 #endif

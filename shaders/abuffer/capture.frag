@@ -1,6 +1,7 @@
 #version 460
 // Section 2: every transparent fragment in front of the opaque depth goes into its pixel's list.
 // COUNTS: it is counted for its pixel too, which the intervals of section 3 need.
+#include "common/pixel.glsl"
 #include "common/surface_input.glsl"
 #include "abuffer/abuffer_types.h"
 
@@ -13,7 +14,7 @@ void main() {
   if (!shade(push.frame.c.materials.at[inMaterial], surfaceInput(), color)) return;
   const uint index = atomicAdd(push.counters.c.fragments, 1u);
   if (index >= push.capacity) return;  // counted all the same: the host grows the pool, or says so
-  const uint pixel = uint(gl_FragCoord.y) * push.frame.c.size.x + uint(gl_FragCoord.x);
+  const uint pixel = pixelIndex(push.frame.c.size);
   linkFragment(push.nodes, push.heads, pixel, index, color, gl_FragCoord.z,
                push.frame.c.transparentIds.at[gl_PrimitiveID]);
 #ifdef COUNTS

@@ -13,14 +13,16 @@ void main() {
   if (run == LIST_END) return;
   const uint pixel = push.deep.at[index].pixel;
   uint head = push.heads.at[pixel];
-  if (sortWithinBudget(push.nodes, head, run)) {
+  const uint most = nodesInLists();
+  if (sortWithinBudget(push.nodes, most, head, run)) {
     vec4 accumulated = vec4(0.0);
     uint count = 0u;
-    for (uint node = head; node != LIST_END; node = push.nodes.at[node].next) {
+    for (uint node = head; node < most && count <= most; node = push.nodes.at[node].next) {
       accumulated = blendUnder(accumulated, unpackColor(push.nodes.at[node].color));
       ++count;
     }
-    finishPixel(pixel, head, accumulated, Tally(count, 0u));
+    if (head == LIST_END) atomicAdd(push.counters.c.broken, 1u);
+    else finishPixel(pixel, head, accumulated, Tally(count, 0u));
     run = LIST_END;
   } else if (push.round + 1u == push.rounds) {
     atomicAdd(push.counters.c.unfinished, 1u);

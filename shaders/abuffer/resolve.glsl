@@ -33,7 +33,8 @@ void resolvePixel(uint pixel) {
   const vec4 accumulated = sortAndBlend(count);
   uint leftOut = 0u;
   if (push.counting != 0u)
-    for (; rest != LIST_END; rest = push.nodes.at[rest].next) ++leftOut;
+    for (const uint most = nodesInLists(); rest < most && leftOut <= most; ++leftOut)
+      rest = push.nodes.at[rest].next;
   finishPixel(pixel, head, accumulated, Tally(count, leftOut));
 }
 

@@ -107,7 +107,7 @@ void sortBy(int sort, uint count) {
 // returns how many.
 uint loadFragments(inout uint node) {
   uint count = 0u;
-  for (; node != LIST_END && count < uint(MAX_FRAGMENTS); node = push.nodes.at[node].next)
+  for (; node < push.capacity && count < uint(MAX_FRAGMENTS); node = push.nodes.at[node].next)
     fragments[count++] = entryOf(node);
   return count;
 }

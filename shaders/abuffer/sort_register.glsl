@@ -57,12 +57,12 @@ uint chainCount = 0u;
 // Sorts the next BLOCK nodes into a chain and returns its first; `node` is then the next block's.
 Entry sortBlock(inout uint node, inout uint count) {
   Entry block[BLOCK];
-#define LOAD(i)                                          \
-  block[i] = noEntry();                                  \
-  if (node != LIST_END && count < uint(MAX_FRAGMENTS)) { \
-    block[i] = entryOf(node);                            \
-    node = push.nodes.at[node].next;                     \
-    ++count;                                             \
+#define LOAD(i)                                              \
+  block[i] = noEntry();                                      \
+  if (node < push.capacity && count < uint(MAX_FRAGMENTS)) { \
+    block[i] = entryOf(node);                                \
+    node = push.nodes.at[node].next;                         \
+    ++count;                                                 \
   }
   FOR_BLOCK(LOAD)
   NETWORK
@@ -77,11 +77,12 @@ Entry sortBlock(inout uint node, inout uint count) {
 // These two as in sort_local.glsl.
 uint loadFragments(inout uint node) {
   uint count = 0u;
-  while (node != LIST_END && count < uint(MAX_FRAGMENTS))
+  while (node < push.capacity && count < uint(MAX_FRAGMENTS))
     chains[chainCount++] = sortBlock(node, count);
   return count;
 }
 
+// A helper invocation's links were not stored, so that its chains may end early.
 vec4 sortAndBlend(uint count) {
   vec4 accumulated = vec4(0.0);
   for (uint i = 0u; i < count; ++i) {
@@ -94,9 +95,10 @@ vec4 sortAndBlend(uint count) {
         best = chain;
       }
     }
+    if (front.node == LIST_END) break;
     const uint next = push.nodes.at[front.node].next;
-    if (next == LIST_END) chains[best] = noEntry();
-    else chains[best] = entryOf(next);
+    if (next < push.capacity) chains[best] = entryOf(next);
+    else chains[best] = noEntry();
     accumulated = blendUnder(accumulated, colorOf(front));
   }
   return accumulated;

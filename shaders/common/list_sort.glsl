@@ -14,22 +14,24 @@
 const uint iterationBudget = 60000u;  // below 65,535 by what the loops here do not count
 
 // One level of the sort: merges neighbouring sorted runs of `run` nodes into runs of twice that.
-// Returns the number of merges; 1 or less means that the list is sorted.
-uint mergeRuns(NodeBuffer nodes, inout uint head, uint run, inout uint iterations, out uint count) {
+// Returns the number of merges; 1 or less means that the list is sorted. `nodeCount`: nodes that there
+// are; a list that is not one (lists.h) is empty afterwards.
+uint mergeRuns(NodeBuffer nodes, uint nodeCount, inout uint head, uint run, inout uint iterations,
+               out uint count) {
   uint rest = head, tail = LIST_END, merges = 0u;
   head = LIST_END;
   count = 0u;
-  while (rest != LIST_END) {
+  while (rest < nodeCount && count <= nodeCount) {
     ++merges;
     uint a = rest, b = rest, countA = 0u, countB = run;
-    while (countA < run && b != LIST_END) {
+    while (countA < run && b < nodeCount) {
       ++countA;
       b = nodes.at[b].next;
     }
     iterations += countA + 1u;
-    while (countA > 0u || (countB > 0u && b != LIST_END)) {
+    while (countA > 0u || (countB > 0u && b < nodeCount)) {
       const bool takeA =
-          countA > 0u && (countB == 0u || b == LIST_END ||
+          countA > 0u && (countB == 0u || b >= nodeCount ||
                           !isInFront(nodes.at[b].depth, nodes.at[b].id, nodes.at[a].depth,
                                      nodes.at[a].id));
       const uint node = takeA ? a : b;
@@ -49,16 +51,19 @@ uint mergeRuns(NodeBuffer nodes, inout uint head, uint run, inout uint iteration
   }
   if (tail != LIST_END) nodes.at[tail].next = LIST_END;
   iterations += count;
-  return merges;
+  if (rest == LIST_END) return merges;
+  head = LIST_END;
+  return 0u;
 }
 
-// Goes on with a list's sort from runs of `run` nodes (1 at the start). True when the list is
-// sorted; else `run` is where the next dispatch begins.
-bool sortWithinBudget(NodeBuffer nodes, inout uint head, inout uint run) {
+// Goes on with a list's sort from runs of `run` nodes (1 at the start), of `nodeCount` that there are.
+// True when the list is sorted; else `run` is where the next dispatch begins. A list that is not one
+// comes back empty: its fragments are then missing in what the methods count.
+bool sortWithinBudget(NodeBuffer nodes, uint nodeCount, inout uint head, inout uint run) {
   uint iterations = 0u;
   for (;;) {
     uint count;
-    if (mergeRuns(nodes, head, run, iterations, count) <= 1u) return true;
+    if (mergeRuns(nodes, nodeCount, head, run, iterations, count) <= 1u) return true;
     run *= 2u;
     // Another level takes at most 2 iterations a node, the blending after it 1.
     if (iterations + 3u * count > iterationBudget) return false;

@@ -12,6 +12,9 @@
 namespace oitlab {
 #endif
 
+// An index that no node has. Where a walk would do harm in a list that is not one (it has a cycle, or
+// something else has been written over it), it ends at any index that no node has, and after as many
+// nodes as there are.
 #define LIST_END 0xffffffffu
 
 #ifndef NODE_COLOR

@@ -1,5 +1,6 @@
 #version 460
 // Adds one for every transparent fragment in front of the opaque depth: those that methods blend.
+#include "common/pixel.glsl"
 #include "common/surface_input.glsl"
 #include "depth/count.h"
 
@@ -12,6 +13,5 @@ void main() {
   vec4 color;
   // Only whether the fragment is there at all is of interest: alpha may cut it away.
   if (!shade(push.frame.c.materials.at[inMaterial], surfaceInput(), color)) return;
-  const uvec2 pixel = uvec2(gl_FragCoord.xy);
-  atomicAdd(push.counts.at[pixel.y * push.frame.c.size.x + pixel.x], 1u);
+  atomicAdd(push.counts.at[pixelIndex(push.frame.c.size)], 1u);
 }

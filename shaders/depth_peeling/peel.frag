@@ -14,6 +14,7 @@
 #extension GL_EXT_shader_atomic_int64 : require
 #endif
 #include "common/order.glsl"
+#include "common/pixel.glsl"
 #include "common/surface_input.glsl"
 #include "depth_peeling/peel_types.h"
 
@@ -83,8 +84,7 @@ void blendBack(uint pixel, vec4 color) {
 void main() {
   const Surface surface = surfaceInput();  // has derivatives: before the quad's invocations part
   const GpuMaterial material = push.frame.c.materials.at[inMaterial];
-  const uvec2 at = uvec2(gl_FragCoord.xy);
-  const uint pixel = at.y * push.frame.c.size.x + at.x;
+  const uint pixel = pixelIndex(push.frame.c.size);
   const uint slot = pixel * keysPerPixel;
   const uint id = push.frame.c.transparentIds.at[gl_PrimitiveID];
   const uint64_t key = wide(Key(~id, floatBitsToUint(gl_FragCoord.z)));

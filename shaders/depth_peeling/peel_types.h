@@ -32,6 +32,7 @@ struct PassDraw {
 struct PeelCounters {
   uint back;          // fragments listed from the back: more than the list holds means overflow
   uint lastBackPass;  // the last pass that blended one from the back; 0: none
+  uint broken;        // pixels whose list does not end: none, or the method is at fault
   // Of instrumented frames only:
   uint fragments;  // in front of the opaque depth
   uint blended;

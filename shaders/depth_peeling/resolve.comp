@@ -17,9 +17,14 @@ void main() {
 #ifdef BACK_LIST
   // An overflowed list is recorded again, and its gaps are not walked. A pixel has as many nodes here
   // as there are passes: less than the 65,535 iterations that llvmpipe allows (maxPasses in C++).
-  if (push.counters.c.back <= push.capacity)
-    for (uint node = push.heads.at[pixel]; node != LIST_END; node = push.listed.at[node].next)
+  if (push.counters.c.back <= push.capacity) {
+    uint node = push.heads.at[pixel], left = push.counters.c.back;
+    for (; node != LIST_END && left > 0u; --left) {
       accumulated = blendUnder(accumulated, push.listed.at[node].color);
+      node = push.listed.at[node].next;
+    }
+    if (node != LIST_END) atomicAdd(push.counters.c.broken, 1u);
+  }
 #endif
 #ifdef BACK_BLEND
   accumulated += (1.0 - accumulated.a) * push.back.at[pixel];

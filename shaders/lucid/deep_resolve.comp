@@ -15,10 +15,11 @@ void main() {
   if (push.counters.c.deepCaptured > push.nodeCapacity) return;
   DeepPixel deep = push.deepPixels.at[number];
   if (deep.done != 0u) return;
-  if (sortWithinBudget(push.nodes, deep.head, deep.run)) {
+  const uint most = push.counters.c.deepCaptured;
+  if (sortWithinBudget(push.nodes, most, deep.head, deep.run)) {
     vec4 accumulated = vec4(0.0);
     uint count = 0u, samples = 0u;
-    for (uint node = deep.head; node != LIST_END; node = push.nodes.at[node].next) {
+    for (uint node = deep.head; node < most && count <= most; node = push.nodes.at[node].next) {
       ++count;
       const vec4 color = push.nodes.at[node].color;
       if (color.a < 0.0) continue;  // cut out

@@ -1,5 +1,6 @@
 #version 460
 // Captures every transparent fragment in front of the opaque depth into its pixel's list.
+#include "common/pixel.glsl"
 #include "common/surface_input.glsl"
 #include "reference/lists.h"
 
@@ -14,8 +15,6 @@ void main() {
   if (!shade(push.frame.c.materials.at[inMaterial], surfaceInput(), color)) return;
   const uint index = atomicAdd(push.counters.c.fragments, 1u);
   if (index >= push.capacity) return;  // counted all the same: the host grows the pool
-  const uvec2 pixel = uvec2(gl_FragCoord.xy);
-  const uint head = pixel.y * push.frame.c.size.x + pixel.x;
-  linkFragment(push.nodes, push.heads, head, index, color, gl_FragCoord.z,
+  linkFragment(push.nodes, push.heads, pixelIndex(push.frame.c.size), index, color, gl_FragCoord.z,
                push.frame.c.transparentIds.at[gl_PrimitiveID]);
 }

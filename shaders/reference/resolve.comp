@@ -16,7 +16,8 @@ shared uint groupUnfinished;
 void blendPixel(ivec2 pixel, uint node) {
   vec4 accumulated = vec4(0.0);
   uint count = 0u;
-  for (; node != LIST_END; node = push.nodes.at[node].next) {
+  const uint most = push.counters.c.fragments;
+  for (; node < most && count <= most; node = push.nodes.at[node].next) {
     accumulated = blendUnder(accumulated, unpackColor(push.nodes.at[node].color));
     ++count;
   }
@@ -43,7 +44,7 @@ void main() {
     uint head = push.heads.at[index];
     if (head != LIST_END) {
       uint run = push.round == 0u ? 1u : push.runs.at[index];
-      if (sortWithinBudget(push.nodes, head, run)) {
+      if (sortWithinBudget(push.nodes, push.counters.c.fragments, head, run)) {
         blendPixel(ivec2(pixel), head);
         head = LIST_END;  // done: later rounds pass it by
       } else {
