@@ -68,6 +68,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
     masks[firstPrepared + lane] = mask;
     ends[firstPrepared + lane] = end;
     covered |= subgroupOr(mask);
+    const uint full = push.alphaThreshold > 0.0 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
     subgroupBarrier();
 
     // Where triangles cover most of the pixels, each lane shades its own; where they are small, lanes
@@ -80,7 +81,9 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
         const float invW = preparedInvW(at, pixel);
         if (isHidden(invW, opaque)) continue;
         Fragment f;
-        if (!shadeFragment(at, pixel, invW, f)) continue;
+        f.invW = invW;
+        f.id = preparedId(at);
+        if (!isFull(p) && !shadeFragment(at, pixel, invW, f)) continue;
         pushFragment(p, f);
         ++samples;
       }
@@ -97,7 +100,9 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
           const uint hit = nthBit(masks[at], n - (k == 0u ? 0u : ends[at - 1u]));
           const vec2 hitPixel = vec2(pixelOf(hit));
           Fragment f;
-          if (shadeFragment(at, hitPixel, preparedInvW(at, hitPixel), f)) {
+          f.invW = preparedInvW(at, hitPixel);
+          f.id = preparedId(at);
+          if ((full & (1u << hit)) != 0u || shadeFragment(at, hitPixel, f.invW, f)) {
             sampleColors[firstSample + lane] = f.color;
             sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.invW), f.id);
             atomicOr(samplesOf[firstSample + hit % OWNERS], 1u << lane);

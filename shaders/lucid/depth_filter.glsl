@@ -40,7 +40,12 @@ void blendFragment(inout Pixel p, Fragment f) {
 }
 
 // Of the queue and `f` the nearest leaves.
+// A pixel at the alpha threshold blends no more: its fragments need no colour.
 void pushFragment(inout Pixel p, Fragment f) {
+  if (isFull(p)) {
+    p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
+    return;
+  }
   Fragment leaving = p.queue[0], carried = f;
   if (fragmentBefore(f, leaving)) {
     carried = leaving;

@@ -116,8 +116,10 @@ float preparedInvW(uint at, vec2 pixel) {
   return planeInvW(plane.x, plane.yz, plane.w, prepared[at * PREPARED_WORDS + 1u].w, pixel);
 }
 
+uint preparedId(uint at) { return floatBitsToUint(prepared[at * PREPARED_WORDS + 3u].w); }
+
 // The fragment at `pixel` (0..7, 0..3) of the half-block; false where the material cuts it out.
-bool shadeFragment(uint at, vec2 pixel, float invW, out Fragment f) {
+bool shadeFragment(uint at, vec2 pixel, float invW, inout Fragment f) {
   const uint place = at * PREPARED_WORDS;
   const vec4 w = prepared[place], p1 = prepared[place + 1u], p2 = prepared[place + 2u];
   const vec4 n0 = prepared[place + 3u], n1 = prepared[place + 4u], n2 = prepared[place + 5u];
@@ -149,7 +151,7 @@ bool shadeFragment(uint at, vec2 pixel, float invW, out Fragment f) {
                b2 * (unpackUnorm4x8(floatBitsToUint(packed.w)) - c0);
   }
   f.invW = invW;
-  f.id = floatBitsToUint(n0.w);
+  f.id = preparedId(at);
   return shade(material, s, f.color);
 }
 

@@ -28,13 +28,12 @@ using namespace oitlab::raster;
 #define REPAIR 2u
 #define SHOW_ERRORS 4u
 
-// The part of a triangle in one half-block: tri-half-block.
+// The part of a triangle in one half-block: tri-half-block. In memory an uvec2, one transaction.
 struct TriHalfBlock {
   uint triangle;  // slot
   uint mask;      // coverage
 };
 
-// In memory an uvec2: one transaction.
 // The list of a half-block: tri-half-blocks [first, first + count), in no order.
 struct HalfBlock {
   uint number;
@@ -79,7 +78,7 @@ struct LucidCounters {
 };
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; }  ;
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };

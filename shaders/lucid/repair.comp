@@ -52,7 +52,7 @@ void blendPixel(ivec2 corner, uint bit) {
     atomicAdd(push.counters.c.expected, block.count);
     atomicAdd(push.counters.c.repairedPixels, 1u);
   }
-  if (count > LIST) {
+  if (count > LIST) {  // the same for all lanes
     if (lane != 0u) return;
     const uint deep = atomicAdd(push.counters.c.deepPixels, 1u);
     atomicAdd(push.counters.c.deepNodes, count);
