@@ -121,9 +121,9 @@ class Lucid : public Method {
   // llvmpipe ends long loops early and in silence: there the turns are counted.
   bool verifiesLoops() const { return device_->info().isCpu(); }
 
-  // Half-blocks that a workgroup of low_raster works on side by side. On a GPU they would wait for
-  // each other: of 4, 2 and 1, 1 is fastest on an NVIDIA H200 (docs/performance.md).
-  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
+  // Half-blocks that a workgroup of low_raster works on side by side. They wait for each other, so
+  // that 2 are faster than 4 on an NVIDIA H200; 1 is faster yet, but frames of it hung there.
+  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
 
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
