@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "gpu/device_info.h"
+#include "gpu/pipeline_statistics.h"
 #include "gpu/shader.h"
 #include "util/error.h"
 
@@ -180,6 +181,16 @@ Device::Device(const Options& options)
   const vk::DeviceQueueCreateInfo queueInfo({}, queueFamily_, 1, &priority);
   vk::DeviceCreateInfo deviceInfo({}, queueInfo);
   deviceInfo.setPNext(&enabled.get<vk::PhysicalDeviceFeatures2>());
+  const char* statisticsExtension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+  vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics(VK_TRUE);
+  if (wantsPipelineStatistics())
+    for (const auto& extension : physical_.enumerateDeviceExtensionProperties())
+      pipelineStatistics_ |= extension.extensionName == std::string_view(statisticsExtension);
+  if (pipelineStatistics_) {
+    deviceInfo.setPEnabledExtensionNames(statisticsExtension);
+    statistics.pNext = const_cast<void*>(deviceInfo.pNext);
+    deviceInfo.setPNext(&statistics);
+  }
   try {
     device_ = vk::raii::Device(physical_, deviceInfo);
   } catch (const vk::SystemError& error) {

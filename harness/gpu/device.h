@@ -74,6 +74,8 @@ class Device {
   const vk::raii::Device& vk() const { return device_; }
   ShaderLibrary& shaders() const { return *shaders_; }
   bool validation() const { return validation_; }
+  /// Asked for (gpu/pipeline_statistics.h) and supported.
+  bool hasPipelineStatistics() const { return pipelineStatistics_; }
 
   /// Messages of the validation layers so far (warnings and errors). A clean run has none.
   std::vector<std::string> validationMessages() const;
@@ -114,6 +116,7 @@ class Device {
   struct MessageLog;
 
   DeviceInfo info_;
+  bool pipelineStatistics_ = false;
   bool validation_ = false;
   std::unique_ptr<MessageLog> log_;
   vk::raii::Context context_;

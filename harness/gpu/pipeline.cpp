@@ -1,5 +1,6 @@
 #include "gpu/pipeline.h"
 
+#include "gpu/pipeline_statistics.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -53,8 +54,11 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = vk::raii::Pipeline(
-      device.vk(), nullptr, vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+  vk::ComputePipelineCreateInfo info({}, stage, device.pipelineLayout());
+  if (device.hasPipelineStatistics())
+    info.flags |= vk::PipelineCreateFlagBits::eCaptureStatisticsKHR;
+  pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+  printPipelineStatistics(device, *pipeline.pipeline_, path);
   return pipeline;
 }
 

@@ -44,7 +44,6 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       writeLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "0"}})) {
   makeQuads(scene);
   bins_ = Buffer(device, memory, "bins", std::uint64_t(bins()) * sizeof(Bin));
-  binLists_ = Buffer(device, memory, "bin categories", std::uint64_t(bins()) * 4);
   counters_ = Buffer(device, memory, "raster counters", sizeof(RasterCounters));
   readback_ = Buffer(device, memory, "raster counters readback", sizeof(RasterCounters),
                      BufferKind::readback);
@@ -105,8 +104,11 @@ void FrontEnd::makeRoomForIrregular(std::uint64_t triangles) {
 
 void FrontEnd::makeRoomForEntries(std::uint64_t entries) {
   entries_ = Buffer();
+  parts_ = Buffer();
   entries_ = Buffer(device_, memory_, "bin entries", entries * 4);
   entryCapacity_ = std::uint32_t(entries);
+  parts_ = Buffer(device_, memory_, "parts of bins",
+                  (std::uint64_t(bins()) + partCapacity()) * sizeof(Part));
 }
 
 RasterPush FrontEnd::addresses(const Frame& frame) const {
@@ -120,14 +122,13 @@ RasterPush FrontEnd::addresses(const Frame& frame) const {
           .quadBins = quadBins_.address(),
           .bins = bins_.address(),
           .entries = entries_.address(),
-          .binLists = binLists_.address(),
+          .parts = parts_.address(),
           .counters = counters_.address(),
           .quadCount = quadCount_,
           .quadCapacity = quadCapacity_,
           .irregularCapacity = irregularCapacity_,
           .entryCapacity = entryCapacity_,
           .backFaceCulling = options_.backFaceCulling,
-          .highTriangles = options_.highTriangles,
           .countAll = frame.instrumented};
 }
 
@@ -163,6 +164,11 @@ void FrontEnd::record(const Frame& frame) {
   });
 }
 
+std::uint32_t FrontEnd::partCapacity() const {
+  // A small quad is one entry and two triangles; each high bin rounds up.
+  return std::uint32_t(2 * std::uint64_t(entryCapacity_) / PART_TRIANGLES) + bins();
+}
+
 bool FrontEnd::grow() {
   const RasterCounters& c = counted();
   if (c.ready != 0) return false;
@@ -193,7 +199,7 @@ void FrontEnd::addCounters(std::map<std::string, std::uint64_t>& counters) const
 
 void FrontEnd::poison(const Commands& commands, std::uint32_t pattern) const {
   for (const Buffer* buffer : {&triangles_, &irregular_, &shading_, &attributes_, &quadBins_,
-                               &bins_, &entries_, &binLists_, &counters_})
+                               &bins_, &entries_, &parts_, &counters_})
     fillBuffer(commands, *buffer, pattern);
 }
 

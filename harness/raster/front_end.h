@@ -19,7 +19,6 @@ class FrontEnd {
  public:
   struct Options {
     bool backFaceCulling = false;
-    std::uint32_t highTriangles = 1024;  ///< a bin with as many triangles is "high"
   };
 
   /// `memory` must outlive this and lists the buffers; `scene` and `target` too. Takes the scene's
@@ -49,6 +48,9 @@ class FrontEnd {
   std::uint32_t bins() const { return binColumns_ * binRows_; }
   std::uint32_t inputQuads() const { return quadCount_; }
 
+  /// Parts of high bins that there is room for: valid until grow().
+  std::uint32_t partCapacity() const;
+
   /// For tests: fills everything that a frame must write before it reads with `pattern`.
   void poison(const Commands& commands, std::uint32_t pattern) const;
 
@@ -66,7 +68,7 @@ class FrontEnd {
   std::uint32_t quadCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
   Pipeline setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
   Buffer quads_, quadIds_, triangles_, irregular_, shading_, attributes_, quadBins_;
-  Buffer bins_, entries_, binLists_, counters_, readback_;
+  Buffer bins_, entries_, parts_, counters_, readback_;
 };
 
 }  // namespace oitlab::raster

@@ -32,10 +32,12 @@ class Lucid : public Method {
         raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
     makePipelines(formatName(target.format()));
     const std::uint64_t halfBlocks = std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS;
-    blocks_ = Buffer(device, memory_, "half-blocks", halfBlocks * sizeof(HalfBlock));
+    blocks_ = Buffer(device, memory_, "half-blocks", 2 * halfBlocks * sizeof(HalfBlock));
+    binBlocks_ = Buffer(device, memory_, "half-blocks of high bins", halfBlocks * sizeof(BinBlock));
     counters_ = Buffer(device, memory_, "lucid counters", sizeof(LucidCounters));
     readback_ = Buffer(device, memory_, "lucid counters readback", sizeof(LucidCounters),
                        BufferKind::readback);
+    makeRoomForParts();
     makeRoomForLists(halfBlocks);
     makeRoomForRepairs(1024);
   }
@@ -43,30 +45,23 @@ class Lucid : public Method {
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
     frontEnd_->record(frame);
-    const LucidPush push = pushOf(frame);
+    const raster::RasterPush front = frontEnd_->addresses(frame);
+    const auto compute = Stage::eComputeShader;
+    frame.stage("blocks", [&] { recordBlocks(frame, front); });
+    const BlendPush push = pushOf(frame, front);
     auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
       pipeline.bind(frame.commands, frame.bindings);
       pipeline.push(frame.commands, push);
       frame.commands.dispatchIndirect(counters_.vk(), offset);
     };
-    const auto compute = Stage::eComputeShader;
-    frame.stage("blocks", [&] {
-      fillBuffer(frame.commands, counters_, 0);
-      frame.barrier(Stage::eTransfer, compute);
-      // Full bins first: what takes longest must not begin last.
-      for (const auto& [pipeline, offset] :
-           {std::pair(&highBlocks_, offsetof(RasterCounters, high)),
-            std::pair(&lowBlocks_, offsetof(RasterCounters, low))}) {
-        pipeline->bind(frame.commands, frame.bindings);
-        pipeline->push(frame.commands, push);
-        frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
-      }
-      frame.barrier(compute, compute | Stage::eDrawIndirect);
-    });
     // The two write different half-blocks, so that no barrier parts them.
     frame.stage("high_raster", [&] { indirect(highRaster_, offsetof(LucidCounters, high)); });
-    frame.stage("low_raster", [&] { indirect(lowRaster_, offsetof(LucidCounters, low)); });
-    recordRepair(frame, push);
+    frame.stage("low_raster", [&] {
+      indirect(ordered_, offsetof(LucidCounters, ordered));
+      frame.barrier(compute, compute | Stage::eDrawIndirect);
+      indirect(lowRaster_, offsetof(LucidCounters, low));
+    });
+    recordRepair(frame, front, push);
     frame.barrier(compute, Stage::eTransfer);
     frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
                               vk::BufferCopy(0, 0, sizeof(LucidCounters)));
@@ -74,7 +69,10 @@ class Lucid : public Method {
   }
 
   Status status() override {
-    if (frontEnd_->grow()) return {.recordAgain = true};
+    if (frontEnd_->grow()) {
+      makeRoomForParts();
+      return {.recordAgain = true};
+    }
     const LucidCounters& c = readback_.mapped<LucidCounters>()[0];
     bool again = false;
     if (c.triHalfBlocks > listCapacity_) {
@@ -110,7 +108,9 @@ class Lucid : public Method {
     frontEnd_->addCounters(status.counters);
     status.counters["fragments"] = c.samples;
     status.counters["half_blocks"] = c.triHalfBlocks;
-    status.counters["long_lists"] = c.longLists;
+    status.counters["short_lists"] = c.shortLists;
+    status.counters["low_lists"] = c.lowLists;  // with the short ones that overlap in depth
+    status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
     status.counters["scratch_bytes"] = list_.bytes() + keys_.bytes() + blocks_.bytes();
@@ -123,7 +123,7 @@ class Lucid : public Method {
 
   // Half-blocks that a workgroup of low_raster works on side by side. They wait for each other, so
   // that 2 are faster than 4 on an NVIDIA H200; 1 is faster yet, but frames of it hung there.
-  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
+  const char* lowTeams() const { if (getenv("OITLAB_TEAMS")) return getenv("OITLAB_TEAMS"); return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
 
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
@@ -143,13 +143,15 @@ class Lucid : public Method {
       defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
     };
-    // A workgroup a bin. On a CPU a large one is no faster.
-    const bool gpu = lanes >= 32;
-    lowBlocks_ = Pipeline::compute(*device_, "lucid/blocks.comp",
-                                   {{"HIGH", "0"}, {"LOW_TEAMS", lowTeams()}}, {gpu ? 256u : 64u});
-    highBlocks_ =
-        Pipeline::compute(*device_, "lucid/blocks.comp", {{"HIGH", "1"}, {"LOW_TEAMS", lowTeams()}},
-                          {gpu ? std::min(1024u, device_->info().maxWorkgroupInvocations) : 64u});
+    // A workgroup a part of a bin. On a CPU a large one is no faster.
+    const std::uint32_t group = lanes >= 32 ? 256u : 64u;
+    for (std::size_t pass = 0; pass < blocksPasses_.size(); ++pass)
+      blocksPasses_[pass] = Pipeline::compute(
+          *device_, "lucid/blocks.comp",
+          {{"PASS", std::to_string(pass)}, {"LOW_TEAMS", lowTeams()}}, {group});
+    Defines ordered = common;
+    ordered["TEAMS"] = ordered["LOW_TEAMS"] = lowTeams();
+    ordered_ = Pipeline::compute(*device_, "lucid/ordered.comp", ordered, {}, lanes);
     lowRaster_ = raster(false);
     highRaster_ = raster(true);
     repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
@@ -160,37 +162,67 @@ class Lucid : public Method {
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
   }
 
-  LucidPush pushOf(const Frame& frame) const {
-    const raster::RasterPush front = frontEnd_->addresses(frame);
+  void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
+    const auto compute = Stage::eComputeShader;
+    const BlocksPush push{.frame = front.frame,
+                          .triangles = front.triangles,
+                          .irregular = front.irregular,
+                          .shading = front.shading,
+                          .bins = front.bins,
+                          .entries = front.entries,
+                          .parts = front.parts,
+                          .rasterCounters = front.counters,
+                          .list = list_.address(),
+                          .keys = keys_.address(),
+                          .blocks = blocks_.address(),
+                          .binBlocks = binBlocks_.address(),
+                          .partFirsts = partFirsts_.address(),
+                          .counters = counters_.address(),
+                          .listCapacity = listCapacity_,
+                          .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
+                          .size = {frame.target.width(), frame.target.height()}};
+    auto run = [&](int pass, std::size_t offset) {
+      blocksPasses_[std::size_t(pass)].bind(frame.commands, frame.bindings);
+      blocksPasses_[std::size_t(pass)].push(frame.commands, push);
+      frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
+    };
+    fillBuffer(frame.commands, counters_, 0);
+    fillBuffer(frame.commands, binBlocks_, 0);
+    frame.barrier(Stage::eTransfer, compute);
+    run(1, offsetof(RasterCounters, high));
+    run(0, offsetof(RasterCounters, low));
+    frame.barrier(compute, compute | Stage::eDrawIndirect);
+    run(2, offsetof(RasterCounters, high));
+    frame.barrier(compute, compute);
+  }
+
+  BlendPush pushOf(const Frame& frame, const raster::RasterPush& front) const {
     std::uint32_t flags = frame.instrumented ? COUNT_SAMPLES : 0u;
     // Without it invalid pixels stay; lists too long to be sorted elsewhere are the repair's even
     // so.
     if (repairs()) flags |= REPAIR;
     if (parameters_.flag("visualize_errors")) flags |= SHOW_ERRORS;
     return {.frame = front.frame,
-            .triangles = front.triangles,
             .irregular = front.irregular,
             .shading = front.shading,
             .attributes = front.attributes,
-            .bins = front.bins,
-            .entries = front.entries,
-            .binLists = front.binLists,
-            .rasterCounters = front.counters,
             .list = list_.address(),
             .keys = keys_.address(),
             .blocks = blocks_.address(),
             .repairs = repairs_.address(),
             .counters = counters_.address(),
-            .listCapacity = listCapacity_,
+            .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
+            .size = {frame.target.width(), frame.target.height()},
             .repairCapacity = repairCapacity_,
             .alphaThreshold = float(parameters_.real("alpha_threshold")),
             .flags = flags};
   }
 
-  void recordRepair(const Frame& frame, const LucidPush& lucid) const {
+  void recordRepair(const Frame& frame, const raster::RasterPush& front,
+                    const BlendPush& lucid) const {
     const auto compute = Stage::eComputeShader;
     RepairPush push{.frame = lucid.frame,
-                    .triangles = lucid.triangles,
+                    .triangles = front.triangles,
                     .irregular = lucid.irregular,
                     .shading = lucid.shading,
                     .attributes = lucid.attributes,
@@ -224,6 +256,12 @@ class Lucid : public Method {
     });
   }
 
+  void makeRoomForParts() {
+    partFirsts_ = Buffer();
+    partFirsts_ = Buffer(*device_, memory_, "places of parts",
+                         std::uint64_t(frontEnd_->partCapacity()) * HALF_BLOCKS * 4);
+  }
+
   void makeRoomForLists(std::uint64_t entries) {
     if (entries > ~0u)
       fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
@@ -255,7 +293,8 @@ class Lucid : public Method {
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &repairs_, &counters_})
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &binBlocks_, &partFirsts_, &repairs_,
+                                 &counters_})
       fillBuffer(frame.commands, *buffer, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
@@ -266,8 +305,9 @@ class Lucid : public Method {
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
   std::uint32_t deepRounds_ = 1;
-  Pipeline lowBlocks_, highBlocks_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
-  Buffer list_, keys_, blocks_, repairs_, counters_, readback_, deepPixels_, nodes_;
+  std::array<Pipeline, 3> blocksPasses_;
+  Pipeline ordered_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
+  Buffer list_, keys_, blocks_, binBlocks_, partFirsts_, repairs_, counters_, readback_, deepPixels_, nodes_;
 };
 
 const RegisterMethod registered({

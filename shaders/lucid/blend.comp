@@ -1,6 +1,6 @@
 #version 460
 // Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Low
-// raster: LIST = LOW_LIST, several teams a workgroup; high raster: LIST = HIGH_LIST, one.
+// raster: LIST = LOW_LIST; high raster: LIST = HIGH_LIST, one team a workgroup.
 //
 // Each lane owns a pixel: a subgroup of less than 32 lanes goes through the list several times, and of
 // one of 64 half the lanes own none.
@@ -8,30 +8,18 @@
 #include "lucid/half_block.glsl"
 
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
-layout(push_constant, scalar) uniform Push { LucidPush push; };
+layout(push_constant, scalar) uniform Push { BlendPush push; };
 
+#define PREPARED_COUNT (TEAMS * SUBGROUP_SIZE)
 #include "lucid/depth_filter.glsl"
+#include "lucid/prepared.glsl"
+#include "lucid/samples.glsl"
 #include "lucid/sort.glsl"
+#include "lucid/sort_key.glsl"
 
-#define OWNERS min(SUBGROUP_SIZE, 32u)
-
-shared uint masks[TEAMS * SUBGROUP_SIZE];      // coverage by the prepared triangles
-shared uint ends[TEAMS * SUBGROUP_SIZE];       // running sum of their fragments
 shared vec4 sampleColors[TEAMS * OWNERS];
-shared uvec2 sampleKeys[TEAMS * OWNERS];       // 1 / w, id
-shared uint samplesOf[TEAMS * OWNERS];            // bit i: sample i falls on this pixel
-
-uint nthBit(uint mask, uint n) {
-  uint place = 0u;
-  [[unroll]] for (uint width = 16u; width > 0u; width /= 2u) {
-    const uint below = bitCount(mask & ((1u << width) - 1u));
-    const bool above = n >= below;
-    n -= above ? below : 0u;
-    mask = above ? mask >> width : mask;
-    place += above ? width : 0u;
-  }
-  return place;
-}
+shared uvec2 sampleKeys[TEAMS * OWNERS];  // 1 / w, id
+shared uint samplesOf[TEAMS * OWNERS];    // bit i: sample i falls on this pixel
 
 // A workgroup a job, up to a number that every device can dispatch.
 void addJob(HalfBlock block, uint pixels) {
@@ -42,10 +30,9 @@ void addJob(HalfBlock block, uint pixels) {
 
 // Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
 // pixels whose order went wrong.
-uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
-           uint placeMask) {
+uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint placeMask) {
   const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
-  const uint firstKey = team * LIST, firstPrepared = team * SUBGROUP_SIZE, firstSample = team * OWNERS;
+  const uint firstKey = team * LIST, firstSample = team * OWNERS;
   const vec2 pixel = vec2(pixelOf(bit));
   const ivec2 place = corner + ivec2(pixel);
   const float opaque = opaqueDepthAt(place);
@@ -55,60 +42,54 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
 
   uint covered = 0u, samples = 0u, turns = 0u;
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
-    const uint batch = min(SUBGROUP_SIZE, block.count - first);
-    uint mask = 0u;
-    if (lane < batch) {
-      const uint inList = keys[firstKey + first + lane] & placeMask;
-      const TriHalfBlock item = itemAt(push.list, block.first + inList);
-      mask = item.mask & owned;
-      if (mask != 0u) prepare(firstPrepared + lane, item.triangle, corner);
+    TriHalfBlock item = TriHalfBlock(0u, 0u);
+    if (first + lane < block.count) {
+      item = itemAt(push.list, block.first + (keys[firstKey + first + lane] & placeMask));
+      item.mask &= owned;
     }
-    const uint end = subgroupInclusiveAdd(bitCount(mask));
-    const uint fragments = subgroupAdd(bitCount(mask));
-    masks[firstPrepared + lane] = mask;
-    ends[firstPrepared + lane] = end;
-    covered |= subgroupOr(mask);
+    covered |= item.mask;
+    Batch b = makeBatch(item.triangle, item.mask);
+    turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
     const uint full = push.alphaThreshold > 0.0 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
-    subgroupBarrier();
 
     // Where triangles cover most of the pixels, each lane shades its own; where they are small, lanes
     // take samples as they come and hand them to the pixels they fall on.
-    if (2u * fragments >= OWNERS * batch) {
-      for (uint k = 0u; k < batch; ++k) {
+    if (2u * b.samples >= OWNERS * b.size) {
+      if (item.mask != 0u) storePrepared(b.place, prepare(item.triangle, corner));
+      teamBarrier();
+      for (uint k = b.at; k < b.at + b.size; ++k) {
         ++turns;
-        const uint at = firstPrepared + k;
-        if (!owner || (masks[at] & (1u << bit)) == 0u) continue;
-        const float invW = preparedInvW(at, pixel);
-        if (isHidden(invW, opaque)) continue;
+        if (!owner || (batch[k].y & (1u << bit)) == 0u) continue;
+        const Prepared t = loadPrepared(k);
         Fragment f;
-        f.invW = invW;
-        f.id = preparedId(at);
-        if (!isFull(p) && !shadeFragment(at, pixel, invW, f)) continue;
+        f.invW = invWOf(t, pixel);
+        f.id = idOf(t);
+        if (isHidden(f.invW, opaque)) continue;
+        if (!isFull(p)) {
+          if (!shadePrepared(t, pixel, f.invW, f.color)) continue;
+          ++samples;
+        }
         pushFragment(p, f);
-        ++samples;
       }
     } else {
-      turns += batch - (fragments + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
-      for (uint chunk = 0u; chunk < fragments; chunk += OWNERS) {
+      turns += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
+      for (uint chunk = 0u; chunk < b.samples; chunk += OWNERS) {
         ++turns;
-        const uint n = chunk + lane;
-        if (owner && n < fragments) {
-          uint k = 0u;  // the first triangle whose samples end beyond n
-          [[unroll]] for (uint step = SUBGROUP_SIZE / 2u; step > 0u; step /= 2u)
-            if (ends[firstPrepared + k + step - 1u] <= n) k += step;
-          const uint at = firstPrepared + k;
-          const uint hit = nthBit(masks[at], n - (k == 0u ? 0u : ends[at - 1u]));
-          const vec2 hitPixel = vec2(pixelOf(hit));
+        const uvec2 hit = sampleOf(b, chunk);
+        if (owner && chunk + lane < b.samples) {
+          const vec2 hitPixel = vec2(pixelOf(hit.y));
+          const Prepared t = prepare(hit.x, corner);
           Fragment f;
-          f.invW = preparedInvW(at, hitPixel);
-          f.id = preparedId(at);
-          if ((full & (1u << hit)) != 0u || shadeFragment(at, hitPixel, f.invW, f)) {
+          f.invW = invWOf(t, hitPixel);
+          f.id = idOf(t);
+          const bool known = (full & (1u << hit.y)) != 0u;
+          if (known || shadePrepared(t, hitPixel, f.invW, f.color)) {
             sampleColors[firstSample + lane] = f.color;
             sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.invW), f.id);
-            atomicOr(samplesOf[firstSample + hit % OWNERS], 1u << lane);
+            atomicOr(samplesOf[firstSample + hit.y % OWNERS], 1u << lane);
           }
         }
-        subgroupBarrier();
+        teamBarrier();
         uint arrived = owner ? samplesOf[firstSample + lane] : 0u;
         if (arrived != 0u) samplesOf[firstSample + lane] = 0u;
         while (arrived != 0u) {
@@ -116,15 +97,16 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
           arrived &= arrived - 1u;
           const Fragment f = Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
           if (isHidden(f.invW, opaque)) continue;
+          if (!isFull(p)) ++samples;
           pushFragment(p, f);
-          ++samples;
         }
-        subgroupBarrier();
+        teamBarrier();
       }
     }
-    subgroupBarrier();
+    teamBarrier();
   }
   drainPixel(p);
+  covered = subgroupOr(covered);
 
   const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
   if (lane == 0u) {
@@ -144,27 +126,34 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner,
   return touched && p.invalid ? 1u << bit : 0u;
 }
 
+// blocks.comp leaves the keys of short lists out, since ordered.comp needs none.
+uint keyOf(HalfBlock block, ivec2 corner, uint i) {
+  if (HIGH == 1 || block.count > SHORT_LIST) return push.keys.at[block.first + i];
+  const TriHalfBlock item = itemAt(push.list, block.first + i);
+  return sortKey(loadShading(push.shading, item.triangle), corner, item.mask);
+}
+
 void blendHalfBlock(HalfBlock block) {
   const uint lane = gl_SubgroupInvocationID, firstKey = gl_SubgroupID * LIST;
-  const ivec2 corner = cornerOf(block.number, push.frame.c.size);
+  const ivec2 corner = cornerOf(block.number, push.size);
   // Depths are sorted within their range, so that few bits tell them apart.
-  float low = NEAREST, high = 0.0;
+  uint low = 0xffffffffu, high = 0u;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
-    const float depth = uintBitsToFloat(push.keys.at[block.first + i]);
-    low = min(low, depth);
-    high = max(high, depth);
+    const uint key = keyOf(block, corner, i);
+    keys[firstKey + i] = key;
+    low = min(low, key);
+    high = max(high, key);
   }
-  low = subgroupMin(low);
-  high = subgroupMax(high);
+  const float farthest = uintBitsToFloat(subgroupMin(low)), nearest = uintBitsToFloat(subgroupMax(high));
   const uint bits = findMSB(block.count) + 1;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
-    keys[firstKey + i] = packKey(uintBitsToFloat(push.keys.at[block.first + i]), low, high, i, bits);
+    keys[firstKey + i] = packKey(uintBitsToFloat(keys[firstKey + i]), farthest, nearest, i, bits);
   sortKeys(firstKey, block.count);
   uint invalid = 0u;
   for (uint begin = 0u; begin < 32u; begin += OWNERS) {
     const uint owned = (0xffffffffu >> (32u - OWNERS)) << begin;
     invalid |= sweep(block, corner, owned, min(begin + lane, 31u), lane < OWNERS, (1u << bits) - 1u);
-    subgroupBarrier();
+    teamBarrier();
   }
   invalid = subgroupOr(invalid);
   if (lane == 0u && invalid != 0u) {
@@ -189,22 +178,17 @@ void handOver(HalfBlock block) {
 }
 
 void main() {
-  const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
-  const uint rows = (push.frame.c.size.y + BIN_SIZE - 1u) / BIN_SIZE;
-#if HIGH
-  const uint count = push.counters.c.longLists;
-#else
-  const uint count = push.counters.c.shortLists;
-#endif
-  // One turn a workgroup: which is next is left to the device, where the paper has persistent threads.
   const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  const uint i = group * TEAMS + gl_SubgroupID;
-  if (i >= count) return;
+  const uint stride = gl_NumWorkGroups.y * gl_NumWorkGroups.x * TEAMS;
 #if HIGH
-  const HalfBlock block = push.blocks.at[columns * rows * HALF_BLOCKS - 1u - i];
-  if (block.count > LIST) handOver(block);
-  else blendHalfBlock(block);
+  for (uint i = group * TEAMS + gl_SubgroupID; i < push.counters.c.highLists; i += stride) {
+    const HalfBlock block = push.blocks.at[push.halfBlocks - 1u - i];
+    if (block.count > LIST) handOver(block);
+    else blendHalfBlock(block);
 #else
-  blendHalfBlock(push.blocks.at[i]);
+  for (uint i = group * TEAMS + gl_SubgroupID; i < push.counters.c.lowLists; i += stride) {
+    blendHalfBlock(push.blocks.at[push.halfBlocks + i]);
 #endif
+    teamBarrier();
+  }
 }

@@ -4,8 +4,6 @@
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
-#define TEAMS 1u
-#define SUBGROUP_SIZE DEEP_GROUP  // a place in shared memory for each invocation
 layout(local_size_x = DEEP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
@@ -23,15 +21,15 @@ void main() {
   for (uint i = begin + self; i < end; i += DEEP_GROUP) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
-    prepare(self, item.triangle, corner);
-    const float invW = preparedInvW(self, pixel);
+    const Prepared t = prepare(item.triangle, corner);
+    const float invW = invWOf(t, pixel);
     if (isHidden(invW, opaque)) continue;
     const uint index = atomicAdd(push.counters.c.deepCaptured, 1u);
     if (index >= push.nodeCapacity) continue;
-    Fragment f;
-    const bool kept = shadeFragment(self, pixel, invW, f);
+    vec4 color;
+    const bool kept = shadePrepared(t, pixel, invW, color);
     Node node;
-    node.color = kept ? f.color : vec4(-1.0);  // cut out: counted, not blended
+    node.color = kept ? color : vec4(-1.0);  // cut out: counted, not blended
     node.depth = invW;
     node.id = idOfTriangle(push.triangles, item.triangle);
     node.next = atomicExchange(push.deepPixels.at[number].head, index);

@@ -39,8 +39,7 @@ void blendFragment(inout Pixel p, Fragment f) {
   p.accumulated = blendUnder(p.accumulated, f.color);
 }
 
-// Of the queue and `f` the nearest leaves.
-// A pixel at the alpha threshold blends no more: its fragments need no colour.
+// Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments need no colour.
 void pushFragment(inout Pixel p, Fragment f) {
   if (isFull(p)) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);

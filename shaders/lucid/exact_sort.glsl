@@ -3,6 +3,8 @@
 #ifndef OITLAB_LUCID_EXACT_SORT_GLSL
 #define OITLAB_LUCID_EXACT_SORT_GLSL
 
+#include "lucid/team.glsl"
+
 const uint noKey = 0xffffffffu;  // in y: padding, behind everything
 
 // x: depth, larger is nearer; y: index.
@@ -19,15 +21,15 @@ bool keyBefore(uvec2 a, uvec2 b) {
 // Sorts keys[first, first + count), front to back; count <= LIST. All lanes of the subgroup take part.
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
-  subgroupBarrier();
+  teamBarrier();
   if (count <= SUBGROUP_SIZE) {
     // Few: each key counts those before it.
     const uvec2 own = lane < count ? keys[first + lane] : uvec2(0u, noKey);
     uint rank = 0u;
     for (uint i = 0u; i < count; ++i) rank += uint(keyBefore(keys[first + i], own));
-    subgroupBarrier();
+    teamBarrier();
     if (lane < count) keys[first + rank] = own;
-    subgroupBarrier();
+    teamBarrier();
     return;
   }
   // Bitonic (Batcher 1968), padded to a power of two.
@@ -36,7 +38,7 @@ void sortKeys(uint first, uint count) {
   for (uint i = count + lane; i < padded; i += SUBGROUP_SIZE) keys[first + i] = uvec2(0u, noKey);
   for (uint size = 2u; size <= padded; size *= 2u) {
     for (uint step = size / 2u; step > 0u; step /= 2u) {
-      subgroupBarrier();
+      teamBarrier();
       for (uint i = lane; i < padded / 2u; i += SUBGROUP_SIZE) {
         const uint low = 2u * i - (i & (step - 1u)), high = low + step;
         const uvec2 a = keys[first + low], b = keys[first + high];
@@ -48,7 +50,7 @@ void sortKeys(uint first, uint count) {
       }
     }
   }
-  subgroupBarrier();
+  teamBarrier();
 }
 
 #endif

@@ -1,5 +1,5 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader defines SUBGROUP_SIZE, TEAMS and HAS_OPAQUE and declares `push`.
+// one pixel. The including shader defines HAS_OPAQUE and declares `push`.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 
@@ -8,11 +8,18 @@
 #include "lucid/lucid_types.h"
 #include "raster/records.glsl"
 
-// What a triangle's fragments need, with the half-block's first sample as the origin: made once for
-// all of them, by one lane, and read by all lanes. 9 words of 16 bytes, so that the accesses of
-// neighbouring lanes fall into different banks of shared memory.
-#define PREPARED_WORDS 9u
-shared vec4 prepared[TEAMS * SUBGROUP_SIZE * PREPARED_WORDS];
+// What a triangle's fragments need, with the half-block's first sample as the origin.
+struct Prepared {
+  vec4 w;              // 1 / w: at the origin, per pixel right, per pixel down; its lower bound
+  vec4 b1;             // the same of the first weight over w; upper bound of 1 / w
+  vec4 b2;             // of the second; alpha cutoff
+  vec4 n0;             // normal of the corner that weighs 1 - b1 - b2; primitive id
+  vec4 n1;             // difference to it of the others; PREPARED_* bits
+  vec4 n2;
+  vec4 color;          // of the material, times the vertex colour where the corners share one
+  vec4 uvs;            // texture coordinates of the first corner, difference of the second
+  vec4 more;           // difference of the third; vertex colours of the second and third, packed
+};
 
 struct Fragment {
   float invW;  // 1 / distance: what depth is near times. Larger is nearer
@@ -62,14 +69,13 @@ float opaqueDepthAt(ivec2 place) {
 // Of the material, in the low bits of the word beside its index.
 #define PREPARED_ATLAS 3u
 #define PREPARED_IGNORE_ALPHA 4u
-#define PREPARED_COLORED 8u
+#define PREPARED_COLORED 8u  // the corners' colours differ; n2.w is that of the first
 #define PREPARED_MATERIAL_SHIFT 4
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 vec2 pick(vec4 a, vec4 b, uint i) { return i == 0u ? a.xy : i == 1u ? a.zw : i == 2u ? b.xy : b.zw; }
 
-// Triangle `slot` into place `at`.
-void prepare(uint at, uint slot, ivec2 corner) {
+Prepared prepare(uint slot, ivec2 corner) {
   const ShadeTriangle s = loadShading(push.shading, slot);
   const GpuMaterial material = push.frame.c.materials.at[s.material];
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
@@ -83,76 +89,72 @@ void prepare(uint at, uint slot, ivec2 corner) {
   precise const float b2 = fma(s.b2Slope.x, d.x, fma(s.b2Slope.y, d.y, weights.y));
   const vec3 n0 = unpackNormal(s.normals[0]);
   const vec3 n1 = unpackNormal(s.normals[1]) - n0, n2 = unpackNormal(s.normals[2]) - n0;
-  uvec3 colors = uvec3(0xffffffffu);
-  vec2 uv0 = vec2(0.0), uv1 = vec2(0.0), uv2 = vec2(0.0);
+  Prepared p;
+  uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas, firstColor = 0u;
+  if (material.ignoreVertexAlpha != 0u) bits |= PREPARED_IGNORE_ALPHA;
+  p.color = material.baseColor;
+  p.uvs = p.more = vec4(0.0);
   if ((s.flags & (TRIANGLE_COLORED | TRIANGLE_TEXTURED)) != 0u) {
     const uint c = s.flags >> TRIANGLE_CORNER_SHIFT;
     const uint c0 = c & 3u, c1 = (c >> 2) & 3u, c2 = (c >> 4) & 3u;
     const QuadAttributes q = push.attributes.at[slot / 2u];
-    colors = uvec3(pick(q.colors, c0), pick(q.colors, c1), pick(q.colors, c2));
-    uv0 = pick(q.uvs01, q.uvs23, c0);
-    uv1 = pick(q.uvs01, q.uvs23, c1) - uv0;
-    uv2 = pick(q.uvs01, q.uvs23, c2) - uv0;
+    const uvec3 colors = uvec3(pick(q.colors, c0), pick(q.colors, c1), pick(q.colors, c2));
+    const vec2 uv0 = pick(q.uvs01, q.uvs23, c0);
+    p.uvs = vec4(uv0, pick(q.uvs01, q.uvs23, c1) - uv0);
+    p.more = vec4(pick(q.uvs01, q.uvs23, c2) - uv0, uintBitsToFloat(colors.yz));
+    firstColor = colors.x;
+    if (colors.y != colors.x || colors.z != colors.x) {
+      bits |= PREPARED_COLORED;
+    } else {
+      const vec4 color = unpackUnorm4x8(colors.x);
+      p.color.rgb *= color.rgb;
+      if (material.ignoreVertexAlpha == 0u) p.color.a *= color.a;
+    }
   }
-  uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas;
-  if (material.ignoreVertexAlpha != 0u) bits |= PREPARED_IGNORE_ALPHA;
-  if (colors.y != colors.x || colors.z != colors.x) bits |= PREPARED_COLORED;
-  const uint place = at * PREPARED_WORDS;
-  prepared[place + 0u] = vec4(originInvW(s, corner), s.invWSlope, bounds.x);
-  prepared[place + 1u] = vec4(b1, s.b1Slope, bounds.y);
-  prepared[place + 2u] = vec4(b2, s.b2Slope, material.alphaCutoff);
-  prepared[place + 3u] = vec4(n0, uintBitsToFloat(s.id));
-  prepared[place + 4u] = vec4(n1, uintBitsToFloat(bits));
-  prepared[place + 5u] = vec4(n2, uintBitsToFloat(colors.x));
-  prepared[place + 6u] = material.baseColor;
-  if (material.atlas != 0u || (bits & PREPARED_COLORED) != 0u) {
-    prepared[place + 7u] = vec4(uv0, uv1);
-    prepared[place + 8u] = vec4(uv2, uintBitsToFloat(colors.y), uintBitsToFloat(colors.z));
-  }
+  p.w = vec4(originInvW(s, corner), s.invWSlope, bounds.x);
+  p.b1 = vec4(b1, s.b1Slope, bounds.y);
+  p.b2 = vec4(b2, s.b2Slope, material.alphaCutoff);
+  p.n0 = vec4(n0, uintBitsToFloat(s.id));
+  p.n1 = vec4(n1, uintBitsToFloat(bits));
+  p.n2 = vec4(n2, uintBitsToFloat(firstColor));
+  return p;
 }
 
-float preparedInvW(uint at, vec2 pixel) {
-  const vec4 plane = prepared[at * PREPARED_WORDS];
-  return planeInvW(plane.x, plane.yz, plane.w, prepared[at * PREPARED_WORDS + 1u].w, pixel);
-}
+float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.w.w, p.b1.w, pixel); }
+uint idOf(Prepared p) { return floatBitsToUint(p.n0.w); }
 
-uint preparedId(uint at) { return floatBitsToUint(prepared[at * PREPARED_WORDS + 3u].w); }
-
-// The fragment at `pixel` (0..7, 0..3) of the half-block; false where the material cuts it out.
-bool shadeFragment(uint at, vec2 pixel, float invW, inout Fragment f) {
-  const uint place = at * PREPARED_WORDS;
-  const vec4 w = prepared[place], p1 = prepared[place + 1u], p2 = prepared[place + 2u];
-  const vec4 n0 = prepared[place + 3u], n1 = prepared[place + 4u], n2 = prepared[place + 5u];
-  precise const float over1 = fma(p1.y, pixel.x, fma(p1.z, pixel.y, p1.x));
-  precise const float over2 = fma(p2.y, pixel.x, fma(p2.z, pixel.y, p2.x));
+// The colour (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block; false where
+// the material cuts it out.
+bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
+  precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
+  precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
   precise const float inverse = 1.0 / invW;
   const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
-  const uint bits = floatBitsToUint(n1.w);
+  const uint bits = floatBitsToUint(p.n1.w);
   GpuMaterial material;
-  material.baseColor = prepared[place + 6u];
-  material.alphaCutoff = p2.w;
+  material.baseColor = p.color;
+  material.alphaCutoff = p.b2.w;
   material.atlas = bits & PREPARED_ATLAS;
-  material.ignoreVertexAlpha = bits & PREPARED_IGNORE_ALPHA;
+  material.ignoreVertexAlpha = 1u;
   Surface s;
-  s.normal = n0.xyz + b1 * n1.xyz + b2 * n2.xyz;
-  s.color = unpackUnorm4x8(floatBitsToUint(n2.w));
+  s.normal = p.n0.xyz + b1 * p.n1.xyz + b2 * p.n2.xyz;
+  s.color = vec4(1.0);  // a part of `baseColor`
   if (material.atlas != 0u) {
     material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
-    const vec4 uvs = prepared[place + 7u];
-    const vec2 uv2 = prepared[place + 8u].xy;
-    s.uv = uvs.xy + b1 * uvs.zw + b2 * uv2;
+    const vec2 uv2 = p.more.xy;
+    s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
     // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
-    s.uvDx = (uvs.xy * w.y + uvs.zw * p1.y + uv2 * p2.y - s.uv * w.y) * inverse;
-    s.uvDy = (uvs.xy * w.z + uvs.zw * p1.z + uv2 * p2.z - s.uv * w.z) * inverse;
+    s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
+    s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
   }
   if ((bits & PREPARED_COLORED) != 0u) {
-    const vec4 c0 = s.color, packed = prepared[place + 8u];
-    s.color += b1 * (unpackUnorm4x8(floatBitsToUint(packed.z)) - c0) +
-               b2 * (unpackUnorm4x8(floatBitsToUint(packed.w)) - c0);
+    const vec4 c0 = unpackUnorm4x8(floatBitsToUint(p.n2.w));
+    const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
+                   b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
+    material.baseColor.rgb *= c.rgb;
+    if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
   }
-  f.invW = invW;
-  f.id = preparedId(at);
-  return shade(material, s, f.color);
+  return shade(material, s, color);
 }
 
 #endif

@@ -19,6 +19,7 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS 32u  // of a bin
 #define STRIPS 8u        // rows of half-blocks in a bin
 
+#define SHORT_LIST 32u    // tri-half-blocks that ordered.comp compares with each other
 #define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
 #define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
@@ -38,6 +39,12 @@ struct TriHalfBlock {
 struct HalfBlock {
   uint number;
   uint first, count;
+};
+
+// Of each half-block of a bin that blocks.comp counts in several parts.
+struct BinBlock {
+  uint count, first;  // its list
+  uint partsDone;      // of the bin; in its first half-block
 };
 
 // Pixels of a half-block to be blended again in exact order.
@@ -61,7 +68,8 @@ struct DeepPixel {
 
 struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
-  uint shortLists, longLists;  // half-blocks by length of list
+  uint shortLists;             // half-blocks of at most SHORT_LIST tri-half-blocks
+  uint lowLists, highLists;    // of at most LOW_LIST, with the short ones that overlap in depth; of more
   uint groupsDone;             // workgroups of blocks.comp
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
@@ -72,7 +80,8 @@ struct LucidCounters {
   uint unfinished;             // deep pixels whose sort wants more rounds
   uint invalidPixels, repairedPixels;
   uint samples;                // fragments: covered, in front of opaque, not cut out
-  Dispatch low, high, repair;  // one workgroup for LOW_TEAMS half-blocks, for one, for one job
+  Dispatch ordered, low;       // one workgroup for LOW_TEAMS half-blocks
+  Dispatch high, repair;       // for one half-block, for one job
   Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
   Dispatch deepResolve;        // x: DEEP_RESOLVE_GROUP deep pixels each
 };
@@ -80,32 +89,49 @@ struct LucidCounters {
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBlockBuffer { BinBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuffer { DeepPixel at[]; };
 #endif
 
-struct LucidPush {
+struct BlocksPush {
   ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(RasterTriangleBuffer) triangles;
   ADDRESS_OF(IrregularBuffer) irregular;
   ADDRESS_OF(ShadeTriangleBuffer) shading;
-  ADDRESS_OF(AttributeBuffer) attributes;
   ADDRESS_OF(BinBuffer) bins;
   ADDRESS_OF(WordBuffer) entries;
-  ADDRESS_OF(WordBuffer) binLists;
+  ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;
   ADDRESS_OF(TriHalfBlockBuffer) list;
-  ADDRESS_OF(WordBuffer) keys;       // parallel to list: depth to sort by
-  ADDRESS_OF(HalfBlockBuffer) blocks;  // with short lists from 0 up, long ones from the end down
+  ADDRESS_OF(WordBuffer) keys;         // parallel to list: depth to sort by; not of short lists
+  ADDRESS_OF(HalfBlockBuffer) blocks;  // short lists from 0 up, high from the middle down, low up
+  ADDRESS_OF(BinBlockBuffer) binBlocks;
+  ADDRESS_OF(WordBuffer) partFirsts;  // of each part of a high bin: places in the half-blocks' lists
+  ADDRESS_OF(LucidCounterBuffer) counters;
+  uint listCapacity;
+  uint halfBlocks;  // of the frame
+  uvec2 size;       // of the frame, pixels
+};
+
+struct BlendPush {
+  ADDRESS_OF(FrameBuffer) frame;
+  ADDRESS_OF(IrregularBuffer) irregular;
+  ADDRESS_OF(ShadeTriangleBuffer) shading;
+  ADDRESS_OF(AttributeBuffer) attributes;
+  ADDRESS_OF(TriHalfBlockBuffer) list;
+  ADDRESS_OF(WordBuffer) keys;
+  ADDRESS_OF(HalfBlockBuffer) blocks;
   ADDRESS_OF(RepairBuffer) repairs;
   ADDRESS_OF(LucidCounterBuffer) counters;
-  uint listCapacity, repairCapacity;
+  uint halfBlocks;  // of the frame
+  uvec2 size;       // of the frame, pixels
+  uint repairCapacity;
   float alphaThreshold;
   uint flags;
 };
 
-// The shaders of the repair need no bins, and have no room for their own buffers beside them.
 struct RepairPush {
   ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(RasterTriangleBuffer) triangles;
@@ -125,7 +151,7 @@ struct RepairPush {
 
 #ifdef __cplusplus
 static_assert(sizeof(RepairPush) <= 128);
-static_assert(sizeof(LucidPush) <= 128);
+static_assert(sizeof(BlocksPush) <= 128 && sizeof(BlendPush) <= 128);
 }  // namespace oitlab::lucid
 #endif
 

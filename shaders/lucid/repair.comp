@@ -27,13 +27,24 @@ float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
   return boundedInvW(originInvW(s, corner), s, pixel);
 }
 
+// To deep_capture.comp: more fragments than can be sorted here.
+void handOver(uint bit, uint count) {
+  const uint deep = atomicAdd(push.counters.c.deepPixels, 1u);
+  atomicAdd(push.counters.c.deepNodes, count);
+  atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
+  if (deep >= push.deepCapacity) return;
+  atomicAdd(push.counters.c.deep.x, 1u);
+  if (deep % DEEP_RESOLVE_GROUP == 0u) atomicAdd(push.counters.c.deepResolve.x, 1u);
+  push.deepPixels.at[deep] = DeepPixel(block, bit, LIST_END, 1u, 0u);
+}
+
 void blendPixel(ivec2 corner, uint bit) {
   const uint lane = gl_SubgroupInvocationID;
   const uvec2 pixel = pixelOf(bit);
   const ivec2 place = corner + ivec2(pixel);
   const float opaque = opaqueDepthAt(place);
   if (lane == 0u) found = walked = 0u;
-  subgroupBarrier();
+  teamBarrier();
   uint steps = 0u;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
     ++steps;
@@ -45,7 +56,7 @@ void blendPixel(ivec2 corner, uint bit) {
     if (place < LIST) keys[place] = uvec2(floatBitsToUint(invW), i);
   }
   atomicAdd(walked, steps);
-  subgroupBarrier();
+  teamBarrier();
   const uint count = found;
   if (lane == 0u) {
     atomicAdd(push.counters.c.walked, walked);
@@ -53,14 +64,7 @@ void blendPixel(ivec2 corner, uint bit) {
     atomicAdd(push.counters.c.repairedPixels, 1u);
   }
   if (count > LIST) {  // the same for all lanes
-    if (lane != 0u) return;
-    const uint deep = atomicAdd(push.counters.c.deepPixels, 1u);
-    atomicAdd(push.counters.c.deepNodes, count);
-    atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
-    if (deep >= push.deepCapacity) return;
-    atomicAdd(push.counters.c.deep.x, 1u);
-    if (deep % DEEP_RESOLVE_GROUP == 0u) atomicAdd(push.counters.c.deepResolve.x, 1u);
-    push.deepPixels.at[deep] = DeepPixel(block, bit, LIST_END, 1u, 0u);
+    if (lane == 0u) handOver(bit, count);
     return;
   }
   sortKeys(0u, count);
@@ -69,19 +73,19 @@ void blendPixel(ivec2 corner, uint bit) {
   for (uint first = 0u; first < count; first += SUBGROUP_SIZE) {
     if (first + lane < count) {
       const TriHalfBlock item = itemAt(push.list, block.first + keys[first + lane].y);
-      prepare(lane, item.triangle, corner);
-      Fragment f;
-      const bool kept = shadeFragment(lane, vec2(pixel), preparedInvW(lane, vec2(pixel)), f);
-      colors[lane] = kept ? f.color : vec4(-1.0);
+      const Prepared t = prepare(item.triangle, corner);
+      vec4 color;
+      const bool kept = shadePrepared(t, vec2(pixel), invWOf(t, vec2(pixel)), color);
+      colors[lane] = kept ? color : vec4(-1.0);
     }
-    subgroupBarrier();
+    teamBarrier();
     for (uint i = 0u; i < min(SUBGROUP_SIZE, count - first); ++i) {
       if (colors[i].a < 0.0) continue;
+      if (push.alphaThreshold > 0.0 && accumulated.a >= push.alphaThreshold) break;
       ++samples;
-      if (push.alphaThreshold > 0.0 && accumulated.a >= push.alphaThreshold) continue;
       accumulated = blendUnder(accumulated, colors[i]);
     }
-    subgroupBarrier();
+    teamBarrier();
   }
   if (lane != 0u) return;
   imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
@@ -97,7 +101,7 @@ void main() {
     const ivec2 corner = cornerOf(block.number, push.frame.c.size);
     for (uint rest = job.pixels; rest != 0u; rest &= rest - 1u) {
       blendPixel(corner, findLSB(rest));
-      subgroupBarrier();
+      teamBarrier();
     }
   }
 }

@@ -3,6 +3,8 @@
 #ifndef OITLAB_LUCID_SORT_GLSL
 #define OITLAB_LUCID_SORT_GLSL
 
+#include "lucid/team.glsl"
+
 // Behind everything.
 const uint padding = 0xffffffffu;
 
@@ -22,15 +24,15 @@ uint packKey(float depth, float low, float high, uint place, uint bits) {
 // Sorts keys[first, first + count), ascending; count <= LIST. All lanes of the subgroup take part.
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
-  subgroupBarrier();
+  teamBarrier();
   if (count <= SUBGROUP_SIZE) {
     // Few: each key counts those before it.
     const uint own = lane < count ? keys[first + lane] : padding;
     uint rank = 0u;
     for (uint i = 0u; i < count; ++i) rank += uint(keys[first + i] < own);
-    subgroupBarrier();
+    teamBarrier();
     if (lane < count) keys[first + rank] = own;
-    subgroupBarrier();
+    teamBarrier();
     return;
   }
   // Bitonic (Batcher 1968), padded to a power of two.
@@ -39,7 +41,7 @@ void sortKeys(uint first, uint count) {
   for (uint i = count + lane; i < padded; i += SUBGROUP_SIZE) keys[first + i] = padding;
   for (uint size = 2u; size <= padded; size *= 2u) {
     for (uint step = size / 2u; step > 0u; step /= 2u) {
-      subgroupBarrier();
+      teamBarrier();
       for (uint i = lane; i < padded / 2u; i += SUBGROUP_SIZE) {
         const uint low = first + 2u * i - (i & (step - 1u)), high = low + step;
         const uint a = keys[low], b = keys[high];
@@ -49,7 +51,7 @@ void sortKeys(uint first, uint count) {
       }
     }
   }
-  subgroupBarrier();
+  teamBarrier();
 }
 
 #endif

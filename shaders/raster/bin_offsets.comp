@@ -1,5 +1,6 @@
 #version 460
-// Stage 2, phase 2: places of the bins' lists by a prefix sum, and the bins' categories. One
+// Stage 2, phase 2: places of the bins' lists by a prefix sum, the bins' categories, and the parts of
+// these that hold many triangles. One
 // workgroup; each invocation takes a run of neighbouring bins.
 #include "raster/raster_types.h"
 
@@ -7,7 +8,7 @@ layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
 
 shared uint sums[1024];
-shared uint emptyBins, lowBins, highBins;
+shared uint emptyBins, lowBins, highBins, highParts;
 
 void main() {
   const uint self = gl_LocalInvocationIndex, group = gl_WorkGroupSize.x;
@@ -15,7 +16,7 @@ void main() {
   const uint bins = grid.x * grid.y;
   const uint run = (bins + group - 1u) / group;
   const uint begin = min(self * run, bins), end = min(begin + run, bins);
-  if (self == 0u) emptyBins = lowBins = highBins = 0u;
+  if (self == 0u) emptyBins = lowBins = highBins = highParts = 0u;
 
   uint sum = 0u;
   for (uint b = begin; b < end; ++b) sum += push.bins.at[b].quads + push.bins.at[b].triangles;
@@ -38,11 +39,15 @@ void main() {
     push.bins.at[b].quadOffset = offset;
     push.bins.at[b].triangleOffset = offset + quads;
     offset += quads + triangles;
-    if (quads + triangles == 0u) atomicAdd(emptyBins, 1u);
-    else if (2u * quads + triangles < push.highTriangles)
-      push.binLists.at[atomicAdd(lowBins, 1u)] = b;
-    else
-      push.binLists.at[bins - 1u - atomicAdd(highBins, 1u)] = b;
+    const uint parts = (2u * quads + triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
+    if (parts == 0u) atomicAdd(emptyBins, 1u);
+    else if (parts == 1u) push.parts.at[atomicAdd(lowBins, 1u)] = Part(b, 0u);
+    else {
+      atomicAdd(highBins, 1u);
+      const uint first = bins + atomicAdd(highParts, parts);
+      if (ready)
+        for (uint p = 0u; p < parts; ++p) push.parts.at[first + p] = Part(b, p);
+    }
   }
   barrier();
   if (self == 0u) {
@@ -51,9 +56,10 @@ void main() {
     push.counters.c.emptyBins = emptyBins;
     push.counters.c.lowBins = lowBins;
     push.counters.c.highBins = highBins;
+    push.counters.c.highParts = highParts;
     push.counters.c.ready = uint(ready);
     push.counters.c.small = Dispatch(ready ? min(smallGroups, MAX_GROUPS) : 0u, 1u, 1u);
     push.counters.c.low = Dispatch(ready ? min(lowBins, MAX_GROUPS) : 0u, 1u, 1u);
-    push.counters.c.high = Dispatch(ready ? min(highBins, MAX_GROUPS) : 0u, 1u, 1u);
+    push.counters.c.high = Dispatch(ready ? min(highParts, MAX_GROUPS) : 0u, 1u, 1u);
   }
 }

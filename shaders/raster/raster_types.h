@@ -19,6 +19,7 @@ using uvec4 = glm::uvec4;
 #define GUARD_BAND (1 << 22)     // snapped coordinates lie within: edge functions fit into 64 bits
 #define SETUP_GROUP 256u         // quads of one workgroup of setup
 #define LARGE_GROUP 64u          // invocations that share one large triangle in binning
+#define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
 // Flags of a RasterTriangle.
@@ -76,6 +77,12 @@ struct Bin {
   uint quadCursor, triangleCursor;    // of the writing phase
 };
 
+// PART_TRIANGLES of a bin's list, or the rest of it.
+struct Part {
+  uint bin;
+  uint number;  // among the bin's parts
+};
+
 // First and last bin, each x | y << 16.
 struct BinBox {
   uint first, last;
@@ -94,9 +101,10 @@ struct RasterCounters {
   uint visibleDegenerate;       // visible quads of one triangle
   uint entries;                 // of all bins' lists
   uint emptyBins, lowBins, highBins;
+  uint highParts;               // of all high bins
   uint ready;                   // 1: nothing overflowed, the lists are complete
   Dispatch small;               // workgroups that write the lists of small quads
-  Dispatch low, high;           // one workgroup a bin
+  Dispatch low, high;           // one workgroup a low bin, one a part of a high bin
 };
 
 #ifndef __cplusplus
@@ -114,6 +122,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer IrregularBuf
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ShadeTriangleBuffer { PackedShadeTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AttributeBuffer { QuadAttributes at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBuffer { Bin at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer PartBuffer { Part at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterCounterBuffer { RasterCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BinBoxBuffer { BinBox at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordBuffer { uint at[]; };
@@ -132,11 +141,10 @@ struct RasterPush {
   ADDRESS_OF(BinBoxBuffer) quadBins;  // per visible quad: bins overlapped
   ADDRESS_OF(BinBuffer) bins;
   ADDRESS_OF(WordBuffer) entries;   // per bin: quads, then triangles
-  ADDRESS_OF(WordBuffer) binLists;  // low bins from 0 up, high bins from the end down
+  ADDRESS_OF(PartBuffer) parts;     // low bins from 0 up; from the number of bins up: of high bins
   ADDRESS_OF(RasterCounterBuffer) counters;
   uint quadCount, quadCapacity, irregularCapacity, entryCapacity;
   uint backFaceCulling;
-  uint highTriangles;  // a bin with as many triangles is "high"
   uint countAll;       // 1: count what only the results need, too
 };
 

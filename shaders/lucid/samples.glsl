@@ -1,0 +1,65 @@
+// Lanes take the samples of small triangles as they come, and hand them to the pixels they fall on
+// (section 2, phase 3). The including shader defines SUBGROUP_SIZE and TEAMS.
+#ifndef OITLAB_LUCID_SAMPLES_GLSL
+#define OITLAB_LUCID_SAMPLES_GLSL
+
+#include "lucid/team.glsl"
+
+// Lanes that take a sample, and pixels that a team goes through side by side.
+#define OWNERS min(SUBGROUP_SIZE, 32u)
+
+// The triangles of a batch that have samples: slot, mask, samples of those before.
+shared uvec4 batch[TEAMS * SUBGROUP_SIZE];
+
+// Which of a batch's samples the lanes have come to.
+struct Batch {
+  uint at;       // of the team's places in `batch`
+  uint size;     // triangles that have samples
+  uint samples;  // of all of them
+  uint place;    // in `batch`, of the lane's own triangle, if it has samples
+  uint begin;    // samples before it; past the end if it has none
+  uint started;  // triangles whose first sample was taken
+};
+
+// Each lane brings one triangle, or a mask of 0. All lanes of the subgroup take part.
+Batch makeBatch(uint slot, uint mask) {
+  Batch b;
+  b.at = gl_SubgroupID * SUBGROUP_SIZE;
+  const uint count = bitCount(mask), end = subgroupInclusiveAdd(count);
+  b.place = b.at + subgroupExclusiveAdd(uint(mask != 0u));
+  b.samples = subgroupAdd(count);
+  b.size = subgroupAdd(uint(mask != 0u));
+  b.begin = mask != 0u ? end - count : 0xffffffffu;
+  b.started = 0u;
+  if (mask != 0u) batch[b.place] = uvec4(slot, mask, end - count, 0u);
+  teamBarrier();
+  return b;
+}
+
+uint nthBit(uint mask, uint n) {
+  uint place = 0u;
+  [[unroll]] for (uint width = 16u; width > 0u; width /= 2u) {
+    const uint below = bitCount(mask & ((1u << width) - 1u));
+    const bool above = n >= below;
+    n -= above ? below : 0u;
+    mask = above ? mask >> width : mask;
+    place += above ? width : 0u;
+  }
+  return place;
+}
+
+// The lane's among the samples [first, first + OWNERS): the triangle's slot and the bit of the pixel.
+// Call with first = 0, OWNERS, ... in turn, all lanes. Where there is none, the result is not to be
+// used.
+uvec2 sampleOf(inout Batch b, uint first) {
+  const uint lane = gl_SubgroupInvocationID;
+  const bool starts = b.begin - first < OWNERS;  // wraps where it began before
+  const uint startBits = subgroupOr(starts ? 1u << (b.begin - first) : 0u);
+  const uint number = b.started + bitCount(startBits & ((2u << min(lane, 31u)) - 1u)) - 1u;
+  b.started += bitCount(startBits);
+  if (lane >= OWNERS || first + lane >= b.samples) return uvec2(0u);
+  const uvec4 triangle = batch[b.at + number];
+  return uvec2(triangle.x, nthBit(triangle.y, first + lane - triangle.z));
+}
+
+#endif

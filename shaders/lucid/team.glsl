@@ -1,0 +1,14 @@
+// A team is a subgroup that works on a half-block.
+#ifndef OITLAB_LUCID_TEAM_GLSL
+#define OITLAB_LUCID_TEAM_GLSL
+
+#extension GL_KHR_memory_scope_semantics : require
+
+// What the team's lanes wrote to shared memory is there for the others. subgroupBarrier() would wait
+// for global memory and images too, which teams do not share.
+void teamBarrier() {
+  controlBarrier(gl_ScopeSubgroup, gl_ScopeSubgroup, gl_StorageSemanticsShared,
+                 gl_SemanticsAcquireRelease);
+}
+
+#endif
