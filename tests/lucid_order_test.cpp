@@ -14,14 +14,14 @@ TEST_F(LucidOrder, IsOneImageForEveryFilterShuffleAndRun) {
   std::vector<Scene> scenes = disorderlyScenes();
   scenes.push_back(loadScene({"boxes", {}, 0.02f}));
   for (const Scene& scene : scenes) {
-    RenderFixture fixture(scene, 160, 90);
+    RenderFixture fixture(scene, 128, 72);
     const auto first = fixture.render("lucid");
     EXPECT_EQ(fixture.render("lucid").hash, first.hash) << scene.name << ", rendered again";
     for (const char* filter : {"1", "2", "8", "16"})
       EXPECT_EQ(fixture.render("lucid", {{"depth_filter", filter}}).hash, first.hash)
           << scene.name << ", depth filter " << filter;
     for (const std::uint64_t seed : {1, 2})
-      EXPECT_EQ(RenderFixture(scene, 160, 90, seed).render("lucid").hash, first.hash)
+      EXPECT_EQ(RenderFixture(scene, 128, 72, seed).render("lucid").hash, first.hash)
           << scene.name << ", shuffled with seed " << seed;
   }
 }
@@ -33,7 +33,7 @@ TEST_F(LucidOrder, WrongPixelsFallAsTheFilterGrowsAndTheRepairMendsThemAll) {
   scenes.push_back(fans());
   for (const Scene& scene : scenes) {
     SCOPED_TRACE(scene.name);
-    RenderFixture fixture(scene, 160, 90);
+    RenderFixture fixture(scene, 128, 72);
     const Image exact = fixture.render("lucid").image;
     std::uint64_t first = 0, before = ~0ull;
     for (const char* filter : {"1", "3", "8", "16"}) {
@@ -61,7 +61,7 @@ TEST_F(LucidOrder, ShowsEveryWrongPixelInRed) {
   for (const Scene& scene : disorderlyScenes())
     for (const char* filter : {"1", "3"}) {
       SCOPED_TRACE(scene.name + ", depth filter " + filter);
-      RenderFixture fixture(scene, 160, 90);
+      RenderFixture fixture(scene, 128, 72);
       const Image exact = fixture.render("lucid").image;
       const auto shown =
           fixture.render("lucid", {{"depth_filter", filter}, {"visualize_errors", "on"}});
