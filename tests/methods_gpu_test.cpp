@@ -175,6 +175,29 @@ TEST_F(Methods, AnEmptyViewIsTheBackground) {
   }
 }
 
+// Drivers take long to compile: a method made ready a second time, for any scene, finds its
+// pipelines. One for another format of target, which its shaders name, has others.
+TEST_F(Methods, PipelinesAreMadeOnce) {
+  const auto& pipelines = sharedDevice().pipelines();
+  RenderFixture fixture(randomSoup(1, 10), 8, 8), other(randomSoup(2, 10), 9, 7);
+  RenderFixture half(randomSoup(1, 10), 8, 8, {}, TargetFormat::rgba16f);
+  for (const auto& [name, info] : methods()) {
+    if (!info.missing(sharedDevice().info()).empty()) continue;
+    fixture.prepare(name);
+    const std::size_t made = pipelines.size();
+    fixture.prepare(name);
+    other.prepare(name);
+    EXPECT_EQ(pipelines.size(), made) << name;
+  }
+  fixture.prepare("lucid", {{"depth_filter", "14"}});
+  const std::size_t before = pipelines.size();
+  fixture.prepare("lucid", {{"depth_filter", "15"}});
+  EXPECT_GT(pipelines.size(), before);
+  const std::size_t made = pipelines.size();
+  half.prepare("lucid", {{"depth_filter", "15"}});
+  EXPECT_GT(pipelines.size(), made);
+}
+
 TEST_F(Methods, MemoryIsListedByBuffer) {
   RenderFixture fixture(generated("planes"), 64, 32);
   const MethodInfo& info = findMethod("reference");

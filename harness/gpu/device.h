@@ -73,6 +73,11 @@ class Device {
   const DeviceInfo& info() const { return info_; }
   const vk::raii::Device& vk() const { return device_; }
   ShaderLibrary& shaders() const { return *shaders_; }
+
+  /// Pipelines made so far, by all that goes into them. A method that is prepared for one scene
+  /// after another has its shaders compiled by the driver once: Pipeline looks here first.
+  std::map<std::string, vk::raii::Pipeline>& pipelines() const { return pipelines_; }
+
   bool validation() const { return validation_; }
   /// Asked for (gpu/pipeline_statistics.h) and supported.
   bool hasPipelineStatistics() const { return pipelineStatistics_; }
@@ -131,6 +136,7 @@ class Device {
   vk::raii::DescriptorSetLayout setLayout_ = nullptr;
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
   std::unique_ptr<ShaderLibrary> shaders_;
+  mutable std::map<std::string, vk::raii::Pipeline> pipelines_;
 };
 
 }  // namespace oitlab

@@ -1,44 +1,57 @@
 #include "gpu/pipeline.h"
 
+#include <span>
+
 #include "gpu/pipeline_statistics.h"
+#include "image/hash.h"
 #include "util/error.h"
 
 namespace oitlab {
 namespace {
 
-vk::raii::ShaderModule makeModule(const Device& device, const std::string& path,
-                                  const Defines& defines) {
-  const auto words = device.shaders().compile(path, defines);
+using Words = std::vector<std::uint32_t>;
+
+vk::raii::ShaderModule makeModule(const Device& device, const Words& words) {
   return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
 }
 
-}  // namespace
+/// All that goes into a pipeline, byte by byte.
+class Key {
+ public:
+  template <typename T>
+  Key& add(const T& value) {
+    static_assert(std::has_unique_object_representations_v<T>);
+    return append(std::as_bytes(std::span(&value, 1)));
+  }
+  template <typename T>
+  Key& add(const std::vector<T>& values) {
+    static_assert(std::has_unique_object_representations_v<T>);
+    add(values.size());
+    return append(std::as_bytes(std::span(values)));
+  }
+  std::string hash() const { return imageHash(std::as_bytes(std::span(text_))); }
 
-vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
-                                               vk::BlendFactor destinationFactor) {
-  using Component = vk::ColorComponentFlagBits;
-  const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
-  return {VK_TRUE,      sourceFactor,      destinationFactor, vk::BlendOp::eAdd,
-          sourceFactor, destinationFactor, vk::BlendOp::eAdd, all};
+ private:
+  Key& append(std::span<const std::byte> bytes) {
+    text_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return *this;
+  }
+  std::string text_;
+};
+
+/// The device's pipeline of this key; `make` makes it where there is none yet.
+template <typename Make>
+vk::Pipeline findOrMake(const Device& device, const Key& key, Make&& make) {
+  auto& pipelines = device.pipelines();
+  const std::string hash = key.hash();
+  auto found = pipelines.find(hash);
+  if (found == pipelines.end()) found = pipelines.emplace(hash, make()).first;
+  return *found->second;
 }
 
-vk::PipelineColorBlendAttachmentState additive() {
-  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOne);
-}
-
-vk::PipelineColorBlendAttachmentState premultipliedOver() {
-  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOneMinusSrcAlpha);
-}
-
-vk::PipelineColorBlendAttachmentState straightOver() {
-  auto state = blending(vk::BlendFactor::eSrcAlpha, vk::BlendFactor::eOneMinusSrcAlpha);
-  state.srcAlphaBlendFactor = vk::BlendFactor::eOne;
-  return state;
-}
-
-Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
-                           const Constants& constants, std::uint32_t subgroupSize) {
-  const auto module = makeModule(device, path, defines);
+vk::raii::Pipeline makeCompute(const Device& device, const Words& words, const Constants& constants,
+                               std::uint32_t subgroupSize) {
+  const auto module = makeModule(device, words);
   std::vector<vk::SpecializationMapEntry> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) entries.emplace_back(i, i * 4, 4);
   vk::SpecializationInfo specialization;
@@ -51,20 +64,16 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   // Lanes are then invocations in order, all of them there: gl_SubgroupID counts whole subgroups.
   if (subgroupSize != 0 && device.info().has("computeFullSubgroups"))
     stage.setFlags(vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups);
-  Pipeline pipeline;
-  pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
-  pipeline.layout_ = device.pipelineLayout();
   vk::ComputePipelineCreateInfo info({}, stage, device.pipelineLayout());
   if (device.hasPipelineStatistics())
     info.flags |= vk::PipelineCreateFlagBits::eCaptureStatisticsKHR;
-  pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
-  printPipelineStatistics(device, *pipeline.pipeline_, path);
-  return pipeline;
+  return {device.vk(), nullptr, info};
 }
 
-Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
-  const auto vertex = makeModule(device, description.vertexShader, description.defines);
-  const auto fragment = makeModule(device, description.fragmentShader, description.defines);
+vk::raii::Pipeline makeGraphics(const Device& device, const Words& vertexWords,
+                                const Words& fragmentWords, const Pipeline::Graphics& description) {
+  const auto vertex = makeModule(device, vertexWords);
+  const auto fragment = makeModule(device, fragmentWords);
   const std::array stages = {
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
       vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main")};
@@ -97,15 +106,71 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
                                       &raster, &multisample, &depthStencil, &blend, &dynamic,
                                       device.pipelineLayout());
   info.setPNext(&rendering);
+  return {device.vk(), nullptr, info};
+}
+
+}  // namespace
+
+vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
+                                               vk::BlendFactor destinationFactor) {
+  using Component = vk::ColorComponentFlagBits;
+  const auto all = Component::eR | Component::eG | Component::eB | Component::eA;
+  return {VK_TRUE,      sourceFactor,      destinationFactor, vk::BlendOp::eAdd,
+          sourceFactor, destinationFactor, vk::BlendOp::eAdd, all};
+}
+
+vk::PipelineColorBlendAttachmentState additive() {
+  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOne);
+}
+
+vk::PipelineColorBlendAttachmentState premultipliedOver() {
+  return blending(vk::BlendFactor::eOne, vk::BlendFactor::eOneMinusSrcAlpha);
+}
+
+vk::PipelineColorBlendAttachmentState straightOver() {
+  auto state = blending(vk::BlendFactor::eSrcAlpha, vk::BlendFactor::eOneMinusSrcAlpha);
+  state.srcAlphaBlendFactor = vk::BlendFactor::eOne;
+  return state;
+}
+
+Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
+                           const Constants& constants, std::uint32_t subgroupSize) {
+  const Words words = device.shaders().compile(path, defines);
+  Pipeline pipeline;
+  pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
+  pipeline.layout_ = device.pipelineLayout();
+  pipeline.pipeline_ = findOrMake(device, Key().add(words).add(constants).add(subgroupSize), [&] {
+    auto made = makeCompute(device, words, constants, subgroupSize);
+    printPipelineStatistics(device, *made, path);
+    return made;
+  });
+  return pipeline;
+}
+
+Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
+  const Words vertex = device.shaders().compile(description.vertexShader, description.defines);
+  const Words fragment = device.shaders().compile(description.fragmentShader, description.defines);
+  const auto key = Key()
+                       .add(vertex)
+                       .add(fragment)
+                       .add(description.colorFormats)
+                       .add(description.depthFormat)
+                       .add(description.depthTest)
+                       .add(description.depthWrite)
+                       .add(description.depthCompare)
+                       .add(description.stencilFormat)
+                       .add(description.stencil)
+                       .add(description.blends);
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+  pipeline.pipeline_ =
+      findOrMake(device, key, [&] { return makeGraphics(device, vertex, fragment, description); });
   return pipeline;
 }
 
 void Pipeline::bind(const Commands& commands) const {
-  commands.bindPipeline(bindPoint_, *pipeline_);
+  commands.bindPipeline(bindPoint_, pipeline_);
 }
 
 void Pipeline::bind(const Commands& commands, vk::DescriptorSet set) const {

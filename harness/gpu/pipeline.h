@@ -11,7 +11,8 @@ namespace oitlab {
 /// Specialization constants: values of constant_id 0, 1, 2, ...
 using Constants = std::vector<std::uint32_t>;
 
-/// A pipeline of either kind. Bind, push, then draw or dispatch.
+/// A pipeline of either kind. Bind, push, then draw or dispatch. A handle: the device owns what is
+/// behind it, and must outlive it.
 class Pipeline {
  public:
   Pipeline() = default;
@@ -64,7 +65,7 @@ class Pipeline {
  private:
   vk::PipelineBindPoint bindPoint_ = vk::PipelineBindPoint::eCompute;
   vk::PipelineLayout layout_;
-  vk::raii::Pipeline pipeline_ = nullptr;
+  vk::Pipeline pipeline_;
 };
 
 /// source * `sourceFactor` + destination * `destinationFactor`, for colour and alpha alike.

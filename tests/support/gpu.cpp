@@ -36,13 +36,23 @@ RenderFixture::RenderFixture(Scene scene, std::uint32_t width, std::uint32_t hei
 RenderFixture::Result RenderFixture::render(const std::string& name,
                                             const std::map<std::string, std::string>& parameters,
                                             std::optional<Camera> camera) {
+  return render(*prepare(name, parameters), camera.value_or(defaultView()));
+}
+
+std::unique_ptr<Method> RenderFixture::prepare(
+    const std::string& name, const std::map<std::string, std::string>& parameters) {
   const MethodInfo& info = findMethod(name);
-  const auto method = renderer_.prepare(info, Parameters(info.parameters, parameters, name));
+  return renderer_.prepare(info, Parameters(info.parameters, parameters, name));
+}
+
+RenderFixture::Result RenderFixture::render(Method& method, const Camera& camera,
+                                            bool instrumented) {
   Result result;
-  result.frame = renderer_.render(*method, camera.value_or(defaultView()), true);
+  result.frame = renderer_.render(method, camera, instrumented);
   const auto bytes = target_.readBytes(sharedDevice());
   result.image = target_.toImage(bytes);
   result.hash = imageHash(bytes);
+  result.memory = renderer_.memoryByBuffer(method);
   return result;
 }
 

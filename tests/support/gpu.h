@@ -32,12 +32,18 @@ class RenderFixture {
     Image image;
     std::string hash;
     FrameResult frame;
+    std::map<std::string, std::uint64_t> memory;  ///< bytes by buffer, "method: ..." and others
   };
 
-  /// One instrumented frame with `method` from the scene's default view.
+  /// One instrumented frame with a fresh `method`, by default from the scene's default view.
   Result render(const std::string& method,
                 const std::map<std::string, std::string>& parameters = {},
                 std::optional<Camera> camera = {});
+
+  /// For several frames with one method: it keeps what the earlier ones made it grow.
+  std::unique_ptr<Method> prepare(const std::string& method,
+                                  const std::map<std::string, std::string>& parameters = {});
+  Result render(Method& method, const Camera& camera, bool instrumented = true);
 
   Renderer& renderer() { return renderer_; }
   const Scene& scene() const { return scene_; }
