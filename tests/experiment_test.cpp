@@ -9,6 +9,7 @@
 
 #include "support/temporary_folder.h"
 #include "util/error.h"
+#include "util/paths.h"
 #include "util/text_file.h"
 
 namespace oitlab::testing {
@@ -189,8 +190,7 @@ TEST_F(Experiments, AProfileThatIsNotThere) {
 }
 
 TEST_F(Experiments, EveryExperimentOfTheProjectCanBeRead) {
-  const std::filesystem::path folder =
-      std::filesystem::path(OITLAB_TEST_SOURCE_DIR) / "experiments";
+  const std::filesystem::path folder = dataRoot() / "experiments";
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "views") continue;
