@@ -13,6 +13,20 @@ vk::raii::ShaderModule makeModule(const Device& device, const std::string& path,
 
 }  // namespace
 
+std::string pipelineRefusal(const std::string& device, const std::vector<std::string>& shaders,
+                            const Defines& defines, const Constants& constants,
+                            const std::string& cause, const std::string& ifRefused) {
+  std::string text = fmt::format("{} makes no pipeline of shaders/{}", device,
+                                 fmt::join(shaders, " and shaders/"));
+  std::vector<std::string> with;
+  for (const auto& [name, value] : defines) with.push_back(fmt::format("{}={}", name, value));
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    with.push_back(fmt::format("constant {}={}", i, constants[i]));
+  if (!with.empty()) text += fmt::format(" ({})", fmt::join(with, ", "));
+  text += ": " + cause;
+  return ifRefused.empty() ? text : text + "; " + ifRefused;
+}
+
 vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
                                                vk::BlendFactor destinationFactor) {
   using Component = vk::ColorComponentFlagBits;
@@ -36,7 +50,8 @@ vk::PipelineColorBlendAttachmentState straightOver() {
 }
 
 Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
-                           const Constants& constants, std::uint32_t subgroupSize) {
+                           const Constants& constants, std::uint32_t subgroupSize,
+                           const std::string& ifRefused) {
   const auto module = makeModule(device, path, defines);
   std::vector<vk::SpecializationMapEntry> entries;
   for (std::uint32_t i = 0; i < constants.size(); ++i) entries.emplace_back(i, i * 4, 4);
@@ -53,8 +68,13 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = vk::raii::Pipeline(
-      device.vk(), nullptr, vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+  try {
+    pipeline.pipeline_ = vk::raii::Pipeline(
+        device.vk(), nullptr, vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+  } catch (const vk::SystemError& error) {
+    throw DeviceError(
+        pipelineRefusal(device.info().name, {path}, defines, constants, error.what(), ifRefused));
+  }
   return pipeline;
 }
 
@@ -96,7 +116,13 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+  try {
+    pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+  } catch (const vk::SystemError& error) {
+    throw DeviceError(
+        pipelineRefusal(device.info().name, {description.vertexShader, description.fragmentShader},
+                        description.defines, {}, error.what(), description.ifRefused));
+  }
   return pipeline;
 }
 
