@@ -258,6 +258,35 @@ def test_a_device_note_marks_the_ratios_to_blend(tmp_path):
     assert "HW, µs, H200 (measured)" in text
 
 
+def test_the_note_stands_beside_every_ratio_to_blend_in_every_format(tmp_path):
+    h200 = DEVICE | {"name": "NVIDIA H200"}
+    for scene in ("boxes", "teapot"):
+        write_performance(tmp_path, [scene], device=h200)
+        write_performance(tmp_path, [scene], device=h200, experiment="methods", format="rgba16f")
+        for opacity in (0.5, 0.800000011920929):
+            cells = [make_cell(scene, "blend", {"order": "submission"}, 2, 0.1, **SMALL)]
+            cells += [lucid_cell(scene, 1, 3, 0, {"repair": False, "alpha_threshold": t}, **SMALL)
+                      for t in (0, 1 - 1 / 128)]
+            for cell in cells:
+                cell |= {"size": list(SIZE), "experiment": "alpha_threshold", "device": h200,
+                         "group": f"{scene}{opacity}", "id": f"alpha-{cell['id']}-{opacity}"}
+                cell["scene"] = cell["scene"] | {"opacity": opacity}
+                write_cell(tmp_path, cell, image=False)
+    make_paper([tmp_path], tmp_path / "out")
+    ratios = {"performance-2560x1330": ["SW/HW", "SW/HW, repaired"],
+              "alpha-threshold": ["SW/HW off", "SW/HW on"], "methods": ["relative time"]}
+    for table, names in ratios.items():
+        path = tmp_path / "out" / f"{table}-h200"
+        csv_head, text, tex = (path.with_suffix(s).read_text(encoding="utf-8") for s in (".csv", ".md", ".tex"))
+        assert "2 of its 66 TPCs" in text and "2 of its 66 TPCs" in tex, table
+        for name in names:
+            assert f"{name} ‡ (H200 (measured))" in csv_head.splitlines()[0]
+            assert f"| {name} ‡, H200 (measured) |" in text
+            assert re.search(rf"[{{ ]{re.escape(name)} \\ddag{{}}", tex), (table, name)
+    for unmarked in ("depth-filter", "scenes", "memory"):
+        assert "‡" not in (tmp_path / "out" / f"{unmarked}-h200.md").read_text(encoding="utf-8"), "no ratio to blend"
+
+
 # -- words --------------------------------------------------------------------------------------------
 
 def pairs(published_values, measured_values):
