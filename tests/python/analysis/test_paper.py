@@ -362,6 +362,26 @@ def test_what_cannot_be_read_is_named_and_the_rest_goes_on(tmp_path):
     assert "half.json" in (tmp_path / "out" / "paper.md").read_text()
 
 
+def test_experiments_that_share_cells_may_be_packed_into_one_folder(tmp_path):
+    """The cell is the same, and so is its id; it was measured in each."""
+    for experiment, time, factor in (("performance", 2.0, 3), ("methods", 5.0, 4), ("memory", 7.0, 9)):
+        for cell in (make_cell("boxes", "blend", {"order": "submission"}, time, 0.1, size=SIZE,
+                               experiment=experiment, **SMALL),
+                     lucid_cell("boxes", time, factor, 100, {"repair": False}, size=SIZE,
+                                experiment=experiment, **SMALL)):
+            write_cell(tmp_path / experiment, cell | {"group": experiment}, image=False)
+        main(["pack", str(tmp_path / experiment), str(tmp_path / "data" / "gpu" / f"{experiment}.json.gz")])
+    said = make_paper([tmp_path / "data"], tmp_path / "out")
+    assert "left out" not in said and "of another file" not in said
+    device = "Example GPU 4000 (measured)"
+    boxes = table_of(tmp_path / "out", "performance-2560x1330-example-gpu-4000")["Boxes"]
+    assert float(boxes[f"HW, µs ({device})"]) == pytest.approx(2000, rel=0.05), "of its own experiment"
+    assert float(boxes[f"SW/HW ({device})"]) == pytest.approx(3, rel=0.01)
+    with open(tmp_path / "out" / "methods-example-gpu-4000.csv", encoding="utf-8", newline="") as file:
+        lucid = next(row for row in csv.DictReader(file) if row["algorithm"] == "LucidRaster")
+    assert float(lucid[f"relative time ({device})"]) == pytest.approx(4, rel=0.01)
+
+
 def test_packs_and_a_folder_of_folders_are_read_too(tmp_path):
     write_performance(tmp_path / "results", ["boxes"])
     main(["pack", str(tmp_path / "results"), str(tmp_path / "data" / "gpu" / "performance.json.gz")])
