@@ -203,6 +203,7 @@ Device::Device(const Options& options)
   const vk::PushConstantRange push(all, 0, pushConstantBytes);
   pipelineLayout_ =
       vk::raii::PipelineLayout(device_, vk::PipelineLayoutCreateInfo({}, *setLayout_, push));
+  pipelineCache_ = vk::raii::PipelineCache(device_, vk::PipelineCacheCreateInfo());
   shaders_ = std::make_unique<ShaderLibrary>();
 }
 

@@ -93,6 +93,9 @@ class Device {
   vk::PipelineLayout pipelineLayout() const { return *pipelineLayout_; }
   vk::DescriptorSetLayout setLayout() const { return *setLayout_; }
 
+  /// What the driver has compiled in this process: a sweep makes the same pipelines for each scene.
+  const vk::raii::PipelineCache& pipelineCache() const { return pipelineCache_; }
+
   Commands makeCommandBuffer() const;
 
   /// Submits and returns at once; `fence` signals when the device is done.
@@ -127,6 +130,7 @@ class Device {
   vk::raii::CommandPool commandPool_ = nullptr;
   vk::raii::DescriptorSetLayout setLayout_ = nullptr;
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
+  vk::raii::PipelineCache pipelineCache_ = nullptr;
   std::unique_ptr<ShaderLibrary> shaders_;
 };
 

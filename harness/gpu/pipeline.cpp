@@ -69,8 +69,9 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
   try {
-    pipeline.pipeline_ = vk::raii::Pipeline(
-        device.vk(), nullptr, vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
+    pipeline.pipeline_ =
+        vk::raii::Pipeline(device.vk(), device.pipelineCache(),
+                           vk::ComputePipelineCreateInfo({}, stage, device.pipelineLayout()));
   } catch (const vk::SystemError& error) {
     throw DeviceError(
         pipelineRefusal(device.info().name, {path}, defines, constants, error.what(), ifRefused));
@@ -117,7 +118,7 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
   pipeline.layout_ = device.pipelineLayout();
   try {
-    pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), nullptr, info);
+    pipeline.pipeline_ = vk::raii::Pipeline(device.vk(), device.pipelineCache(), info);
   } catch (const vk::SystemError& error) {
     throw DeviceError(
         pipelineRefusal(device.info().name, {description.vertexShader, description.fragmentShader},
