@@ -9,6 +9,7 @@
 
 #include "support/temporary_folder.h"
 #include "util/error.h"
+#include "util/paths.h"
 #include "util/text_file.h"
 
 namespace oitlab::testing {
@@ -188,13 +189,37 @@ TEST_F(Experiments, AProfileThatIsNotThere) {
   }
 }
 
+TEST_F(Experiments, DetailMayBeOfSomeScenesOnly) {
+  const auto path = folder_ / "d.toml";
+  const std::string text = R"(
+scenes = ["boxes", "planes", { source = "smoke", detail = 0.5 }, { source = "teapot", detail = 0.2 }]
+methods = ["blend"]
+[profile.cpu]
+detail = { boxes = 0.125, smoke = 0.25, teapot = 0.75 }
+)";
+  writeFileAtomically(path, text);
+  const auto details = [&](const ExperimentOptions& options) {
+    std::vector<float> found;
+    for (const CellSpec& cell : readExperiment(path, options).cells)
+      found.push_back(cell.scene.detail);
+    return found;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(details({}), ElementsAre(1.0f, 1.0f, 0.5f, 0.2f));
+  EXPECT_THAT(details({.profile = "cpu"}), ElementsAre(0.125f, 1.0f, 0.25f, 0.2f));
+  EXPECT_THAT(details({.profile = "cpu", .detail = 0.5f}), ElementsAre(0.5f, 0.5f, 0.5f, 0.5f));
+  EXPECT_THAT(errorOf("detail = { boxs = 0.1 }\nscenes = ['boxes']\nmethods = ['blend']\n"),
+              AllOf(HasSubstr("x.toml:1"), HasSubstr("did you mean 'boxes'")));
+  EXPECT_THAT(errorOf("detail = { boxes = 2 }\nscenes = ['boxes']\nmethods = ['blend']\n"),
+              HasSubstr("out of range"));
+}
+
 TEST_F(Experiments, EveryExperimentOfTheProjectCanBeRead) {
-  const std::filesystem::path folder =
-      std::filesystem::path(OITLAB_TEST_SOURCE_DIR) / "experiments";
+  const std::filesystem::path folder = dataRoot() / "experiments";
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "views") continue;
-    for (const char* profile : {"full", "cpu"}) {
+    for (const char* profile : {"full", "brief", "cpu"}) {
       const Experiment experiment = readExperiment(entry.path(), {.profile = profile});
       EXPECT_FALSE(experiment.cells.empty()) << entry.path();
       EXPECT_EQ(experiment.name, entry.path().stem()) << "results go to a folder of this name";

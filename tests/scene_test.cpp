@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,18 +108,24 @@ class NamedViews : public TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     std::filesystem::create_directories(folder_ / "experiments");
+    if (const char* before = std::getenv("OITLAB_ROOT")) before_ = before;
     ::setenv("OITLAB_ROOT", folder_.c_str(), 1);
     GlbBuilder glb;
     glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions({0, 0, 0, 1, 0, 0, 0, 1, 0})}})}});
     path_ = glb.write(folder_ / "x.glb");
   }
   void TearDown() override {
-    ::unsetenv("OITLAB_ROOT");
+    // A bundle's launcher says there where the bundle is, and the tests after this one need it.
+    if (before_)
+      ::setenv("OITLAB_ROOT", before_->c_str(), 1);
+    else
+      ::unsetenv("OITLAB_ROOT");
     TemporaryFolder::TearDown();
   }
   void toml(const char* name, const char* text) { std::ofstream(folder_ / name) << text; }
 
   std::string path_;
+  std::optional<std::string> before_;  ///< of OITLAB_ROOT
 };
 
 TEST_F(NamedViews, NoFileIsNoError) {

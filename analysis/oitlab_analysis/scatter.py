@@ -19,6 +19,7 @@ from . import formats
 from .metrics import METRICS, Metric
 from .sections import Section
 from .style import COLUMN, MARKERS, PAGE, method_colours, source_line
+from .table import NOTED
 
 PANELS_PER_CHART = 12
 PANEL_COLUMNS = 3
@@ -240,7 +241,10 @@ def draw_overall(section: Section, page: int, name: str) -> Figure | None:
     axes.grid(color="#e4e4e4", linewidth=0.5)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_ylabel(f"{metric.label} (mean)", size=8)
-    axes.set_xlabel("time over that of the baseline (log scale)\n"
-                    + textwrap.fill(source_line(section), 60), size=7.5)
+    # On the chart itself, because charts get copied around.
+    said = [note for note in dict.fromkeys(section.table["device_note"]) if note]
+    axes.set_xlabel("\n".join([f"time over that of the baseline{NOTED if said else ''} (log scale)",
+                               textwrap.fill(source_line(section), 60),
+                               *(textwrap.fill(f"{NOTED.strip()} {note}", 60) for note in said)]), size=7.5)
     _legend(figure, table, looks, columns=2)
     return figure

@@ -10,6 +10,7 @@ namespace {
 struct RunOptions {
   std::string file, results, shard = "1/1", profile = "auto", size;
   float detail = 0;  // 0: as the file says
+  double stopAfter = std::numeric_limits<double>::infinity();
   bool dryRun = false;
   Device::Options device;
 };
@@ -65,10 +66,13 @@ int run(const RunOptions& options) {
   const Device device(options.device);
   fmt::print(stderr, "{}: {} cells on {}, profile {}\n", experiment.title, cells.size(), info.name,
              experiment.profile);
-  const RunSummary summary = runExperiment(device, experiment, cells, results);
+  const RunSummary summary = runExperiment(device, experiment, cells, results, options.stopAfter);
   fmt::print(stderr,
              "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
              summary.done, summary.present, summary.failed, summary.skipped, results.string());
+  if (summary.left > 0)
+    fmt::print(stderr, "{} not begun when {} s were over: the same command measures them\n",
+               summary.left, options.stopAfter);
   if (summary.otherVersion > 0)
     fmt::print(stderr,
                "{} of the cells there before were made by another commit of oitlab; remove {} to "
@@ -104,6 +108,11 @@ void addRun(CLI::App& program, Action& action) {
         return parseSize(text) ? "" : fmt::format("{}: wanted WxH, such as 1280x720", text);
       })
       ->type_name("WxH");
+  verb->add_option("--stop-after", options->stopAfter,
+                   "Begin nothing after so many seconds, where a job's time is limited; the same "
+                   "command goes on from there")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
   verb->add_flag("--dry-run", options->dryRun, "List the cells and measure nothing");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return run(*options); }; });

@@ -32,8 +32,14 @@ struct Axes {
 struct Context {
   fs::path folder;
   ExperimentOptions options;
-  float detail = 1.0f;  ///< of generated scenes, at most
+  float detail = 1.0f;                       ///< of generated scenes, at most
+  std::map<std::string, float> sceneDetail;  ///< of these, at most
   std::vector<std::string> notes;
+
+  float most(const std::string& source) const {
+    const auto own = sceneDetail.find(source);
+    return own == sceneDetail.end() ? detail : own->second;
+  }
 };
 
 bool isGenerated(const std::string& source) {
@@ -66,7 +72,7 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, Con
   const toml::table* given = node.as_table();
   if (given == nullptr) {
     choice.spec.source = resolveSource(owner, node, owner.string(node, "a scene"), false, folder);
-    if (isGenerated(choice.spec.source)) choice.spec.detail = context.detail;
+    if (isGenerated(choice.spec.source)) choice.spec.detail = context.most(choice.spec.source);
     return {choice};
   }
   TomlTable table(owner.file(), "a scene", *given);
@@ -76,8 +82,8 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node, Con
   choice.spec.source = resolveSource(table, node, source, optional, folder);
   choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
   if (isGenerated(choice.spec.source))
-    choice.spec.detail =
-        context.options.detail.value_or(std::min(choice.spec.detail, context.detail));
+    choice.spec.detail = context.options.detail.value_or(
+        std::min(choice.spec.detail, context.most(choice.spec.source)));
   for (const toml::node* view : table.list("views"))
     choice.views.push_back(table.string(*view, "a view"));
   std::vector<std::optional<float>> opacities;
@@ -189,6 +195,21 @@ void addProduct(const Axes& axes, std::set<std::string>& known, std::vector<Cell
                         method.parameters};
           if (known.insert(cell.identity().dump()).second) cells.push_back(std::move(cell));
         }
+}
+
+/// `detail`: one number for all generated scenes, or a table of some by name.
+void readDetail(TomlTable& root, Context& context) {
+  const toml::node* node = root.find("detail");
+  if (node == nullptr) return;
+  if (!node->is_table()) {
+    context.detail = float(root.number("detail", 1.0, 1e-6, 1.0));
+    return;
+  }
+  TomlTable table(root.file(), "'detail'", *node->as_table());
+  for (const SceneInfo& info : sceneCatalogue())
+    if (table.find(info.name) != nullptr)
+      context.sceneDetail[info.name] = float(table.number(info.name, 1.0, 1e-6, 1.0));
+  table.finish();
 }
 
 void readMeasure(TomlTable& root, const toml::node& node, MeasureSettings& settings) {
@@ -309,9 +330,13 @@ Experiment readExperiment(const fs::path& path, const ExperimentOptions& options
   experiment.measure.seed = std::uint64_t(table.number("seed", 1, 0, 1e15));
   if (const toml::node* node = table.find("measure")) readMeasure(table, *node, experiment.measure);
 
-  Context context{path.has_parent_path() ? path.parent_path() : fs::path("."), options, 1.0f, {}};
-  context.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
-  if (options.detail) context.detail = *options.detail;
+  Context context{
+      path.has_parent_path() ? path.parent_path() : fs::path("."), options, 1.0f, {}, {}};
+  readDetail(table, context);
+  if (options.detail) {
+    context.detail = *options.detail;
+    context.sceneDetail.clear();
+  }
   Axes axes;
   readAxes(table, axes, context);
   const auto sweeps = table.list("sweep");

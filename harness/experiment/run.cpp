@@ -24,6 +24,12 @@ json describeSummary(const Series& series, std::uint64_t seed) {
           {"max", s.max},     {"p95", s.p95},       {"ci95", {s.ciLow, s.ciHigh}}};
 }
 
+/// What was found of an image: many cells of a group have the same.
+struct Judged {
+  json quality;
+  fs::path file;
+};
+
 json describeQuality(const Image& image, const Image& reference, const std::string& name) {
   json quality = describeComparison(compareImages(image, reference));
   quality["reference"] = name;
@@ -60,6 +66,7 @@ class Run {
   fs::path results_;
   Progress& progress_;
   LastScene scene_;
+  std::map<std::string, Judged> judged_;  // by hash, of the group that is being measured
   const std::string runId_ =
       fmt::format("{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
 };
@@ -139,11 +146,21 @@ void Run::writeMeasured(const CellSpec& cell, const Renderer& renderer, const Me
   content["memory_bytes"] = describeMemory(renderer, method);
 
   const Image image = renderer.target().toImage(m.image);
-  content["image_hash"] = imageHash(m.image);
-  content["quality"] = nullptr;
-  if (reference) content["quality"] = describeQuality(image, *reference, experiment_.reference);
+  const std::string hash = imageHash(m.image);
   const std::string file = "images/" + content["id"].get<std::string>() + ".png";
-  writeImage(results_ / file, image);
+  const auto same = judged_.find(hash);
+  std::error_code error;
+  if (same != judged_.end())
+    fs::copy_file(same->second.file, results_ / file, fs::copy_options::overwrite_existing, error);
+  if (same == judged_.end() || error) writeImage(results_ / file, image);
+  if (same != judged_.end()) {
+    content["quality"] = same->second.quality;
+  } else {
+    content["quality"] = nullptr;
+    if (reference) content["quality"] = describeQuality(image, *reference, experiment_.reference);
+    judged_[hash] = {content["quality"], results_ / file};
+  }
+  content["image_hash"] = hash;
   content["image"] = {{"file", file}};
   ++summary.done;
   writeCell(cell, std::move(content));
@@ -171,6 +188,7 @@ void Run::measureOn(const std::vector<CellSpec>& cells) {
   const Target target(device_, first.width, first.height, first.format);
   Renderer renderer(device_, gpuScene, target);
   const auto reference = renderReference(renderer, camera);
+  judged_.clear();
 
   std::vector<CellSpec> ready;
   std::vector<std::unique_ptr<Method>> owned;
@@ -232,7 +250,9 @@ void makeFolder(const fs::path& folder) {
 }  // namespace
 
 RunSummary runExperiment(const Device& device, const Experiment& experiment,
-                         const std::vector<CellSpec>& cells, const fs::path& results) {
+                         const std::vector<CellSpec>& cells, const fs::path& results,
+                         double seconds) {
+  const auto start = std::chrono::steady_clock::now();
   for (const CellSpec& cell : cells) checkTargetSize(device.info(), cell.width, cell.height);
   makeFolder(results / "cells");
   makeFolder(results / "images");
@@ -263,7 +283,14 @@ RunSummary runExperiment(const Device& device, const Experiment& experiment,
 
   Progress progress(wanted.size());
   Run run(device, experiment, results, progress);
-  for (const auto& group : groupCells(wanted)) run.measureGroup(group);
+  for (const auto& group : groupCells(wanted)) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    if (passed.count() < seconds)
+      run.measureGroup(group);
+    else
+      run.summary.left += group.size();
+  }
+  progress.clear();
   run.summary.present = before.present;
   run.summary.otherVersion = before.otherVersion;
   return run.summary;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 
 #include "experiment/experiment.h"
 
@@ -30,14 +31,17 @@ struct RunSummary {
   std::size_t done = 0, failed = 0, skipped = 0;
   std::size_t present = 0;       ///< were there before
   std::size_t otherVersion = 0;  ///< of those, made by another commit of oitlab
+  std::size_t left = 0;          ///< not begun, because the time was over
 };
 
 /// Measures the cells that `results` does not hold yet. One JSON file a cell in results/cells, its
 /// picture in results/images, each under a temporary name until complete: a killed run loses only
-/// what was being measured. A cell that cannot be measured is written with the reason. Throws
-/// InputError, before anything is measured, when the folder cannot be written or a size is beyond
-/// the device.
+/// what was being measured. A cell that cannot be measured is written with the reason. After
+/// `seconds` no further group of cells is begun: what has been is measured in full, so that another
+/// run can go on from there. Throws InputError, before anything is measured, when the folder cannot
+/// be written or a size is beyond the device.
 RunSummary runExperiment(const Device& device, const Experiment& experiment,
-                         const std::vector<CellSpec>& cells, const std::filesystem::path& results);
+                         const std::vector<CellSpec>& cells, const std::filesystem::path& results,
+                         double seconds = std::numeric_limits<double>::infinity());
 
 }  // namespace oitlab

@@ -133,16 +133,36 @@ vk::PipelineColorBlendAttachmentState straightOver() {
   return state;
 }
 
+std::string pipelineRefusal(const std::string& device, const std::vector<std::string>& shaders,
+                            const Defines& defines, const Constants& constants,
+                            const std::string& cause, const std::string& ifRefused) {
+  std::string text = fmt::format("{} makes no pipeline of shaders/{}", device,
+                                 fmt::join(shaders, " and shaders/"));
+  std::vector<std::string> with;
+  for (const auto& [name, value] : defines) with.push_back(fmt::format("{}={}", name, value));
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    with.push_back(fmt::format("constant {}={}", i, constants[i]));
+  if (!with.empty()) text += fmt::format(" ({})", fmt::join(with, ", "));
+  text += ": " + cause;
+  return ifRefused.empty() ? text : text + "; " + ifRefused;
+}
+
 Pipeline Pipeline::compute(const Device& device, const std::string& path, const Defines& defines,
-                           const Constants& constants, std::uint32_t subgroupSize) {
+                           const Constants& constants, std::uint32_t subgroupSize,
+                           const std::string& ifRefused) {
   const Words words = device.shaders().compile(path, defines);
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
   pipeline.pipeline_ = findOrMake(device, Key().add(words).add(constants).add(subgroupSize), [&] {
-    auto made = makeCompute(device, words, constants, subgroupSize);
-    printPipelineStatistics(device, *made, path);
-    return made;
+    try {
+      auto made = makeCompute(device, words, constants, subgroupSize);
+      printPipelineStatistics(device, *made, path);
+      return made;
+    } catch (const vk::SystemError& error) {
+      throw DeviceError(
+          pipelineRefusal(device.info().name, {path}, defines, constants, error.what(), ifRefused));
+    }
   });
   return pipeline;
 }
@@ -164,8 +184,15 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ =
-      findOrMake(device, key, [&] { return makeGraphics(device, vertex, fragment, description); });
+  pipeline.pipeline_ = findOrMake(device, key, [&] {
+    try {
+      return makeGraphics(device, vertex, fragment, description);
+    } catch (const vk::SystemError& error) {
+      throw DeviceError(pipelineRefusal(
+          device.info().name, {description.vertexShader, description.fragmentShader},
+          description.defines, {}, error.what(), description.ifRefused));
+    }
+  });
   return pipeline;
 }
 

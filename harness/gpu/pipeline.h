@@ -19,10 +19,11 @@ class Pipeline {
 
   /// A compute pipeline from shaders/`path`. `subgroupSize` (0 = the device's choice) is required
   /// through subgroupSizeControl where the device has it, and subgroups are full: the workgroup's
-  /// width must be a multiple of it.
+  /// width must be a multiple of it. Throws DeviceError, with the shader and `ifRefused`, where the
+  /// driver makes none.
   static Pipeline compute(const Device& device, const std::string& path,
                           const Defines& defines = {}, const Constants& constants = {},
-                          std::uint32_t subgroupSize = 0);
+                          std::uint32_t subgroupSize = 0, const std::string& ifRefused = "");
 
   struct Graphics {
     std::string vertexShader = "common/scene.vert";
@@ -47,7 +48,11 @@ class Pipeline {
                                0};
     std::vector<vk::PipelineColorBlendAttachmentState>
         blends;  ///< one per colour format; default: no blending
+    /// What to say beside the driver's reason where it refuses the pipeline: what is unusual about
+    /// it, and what to ask for instead.
+    std::string ifRefused;
   };
+  /// Throws DeviceError, with the shaders and `ifRefused`, where the driver makes none.
   static Pipeline graphics(const Device& device, const Graphics& description);
 
   void bind(const Commands& commands, vk::DescriptorSet set) const;
@@ -67,6 +72,12 @@ class Pipeline {
   vk::PipelineLayout layout_;
   vk::Pipeline pipeline_;
 };
+
+/// The message for a pipeline that `device` refuses for `cause`: `shaders` are relative to
+/// shaders/.
+std::string pipelineRefusal(const std::string& device, const std::vector<std::string>& shaders,
+                            const Defines& defines, const Constants& constants,
+                            const std::string& cause, const std::string& ifRefused);
 
 /// source * `sourceFactor` + destination * `destinationFactor`, for colour and alpha alike.
 vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,

@@ -6,10 +6,14 @@ namespace {
 std::string valueOf(const vk::PipelineExecutableStatisticKHR& statistic) {
   using Format = vk::PipelineExecutableStatisticFormatKHR;
   switch (statistic.format) {
-    case Format::eBool32: return statistic.value.b32 ? "yes" : "no";
-    case Format::eInt64: return std::to_string(statistic.value.i64);
-    case Format::eUint64: return std::to_string(statistic.value.u64);
-    case Format::eFloat64: return fmt::format("{}", statistic.value.f64);
+    case Format::eBool32:
+      return statistic.value.b32 ? "yes" : "no";
+    case Format::eInt64:
+      return std::to_string(statistic.value.i64);
+    case Format::eUint64:
+      return std::to_string(statistic.value.u64);
+    case Format::eFloat64:
+      return fmt::format("{}", statistic.value.f64);
   }
   return "?";
 }

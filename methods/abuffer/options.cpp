@@ -15,9 +15,11 @@ std::uint32_t sortNumber(const std::string& name) {
   return std::uint32_t(std::find(sortNames.begin(), sortNames.end(), name) - sortNames.begin());
 }
 
-/// The sorts of a shader with room for `length` fragments; `branching`: it chooses when it runs.
-void defineSorts(Defines& defines, const Parameters& parameters, const DeviceInfo& device,
-                 std::uint32_t length, bool branching) {
+/// The sorts of a shader with room for `length` fragments of `entryBytes`; `branching`: it chooses
+/// when it runs.
+void defineSorts(IntervalPlan& plan, const Parameters& parameters, const DeviceInfo& device,
+                 std::uint32_t length, bool branching, std::uint32_t entryBytes) {
+  Defines& defines = plan.defines;
   const std::string& sort = parameters.choice("sort");
   std::uint32_t small = sortNumber(sort), large = small, upTo = length;
   if (sort == "auto") {
@@ -32,6 +34,14 @@ void defineSorts(Defines& defines, const Parameters& parameters, const DeviceInf
   defines["SMALL_SORT"] = fmt::format("{}", small);
   defines["LARGE_SORT"] = fmt::format("{}", large);
   defines["SMALL_UP_TO"] = fmt::format("{}", upTo);
+  // The arrays of sort_local.glsl and sort_register.glsl.
+  const auto uses = [&](const char* name) {
+    return small == sortNumber(name) || large == sortNumber(name);
+  };
+  std::uint32_t entries = uses("bitonic") ? std::bit_ceil(length) : length;
+  if (uses("merge")) entries += (std::bit_ceil(length) + 1) / 2;
+  if (uses("register")) entries = (length + 31) / 32;
+  plan.localBytes = entries * entryBytes;
 }
 
 }  // namespace
@@ -54,21 +64,22 @@ Options::Options(const Parameters& parameters, const DeviceInfo& device,
   const std::string& color = parameters.choice("node_color");
   nodes["NODE_COLOR"] = color == "rgba32f" ? "0" : color == "rgba16f" ? "1" : "2";
   nodes["TARGET_FORMAT"] = targetFormat;
-  nodeBytes = std::uint32_t(sizeof(Node) - sizeof(vec4)) + (color == "rgba32f"   ? 16
-                                                            : color == "rgba16f" ? 8
-                                                                                 : 4);
+  const std::uint32_t colorBytes = color == "rgba32f" ? 16 : color == "rgba16f" ? 8 : 4;
+  nodeBytes = std::uint32_t(sizeof(Node) - sizeof(vec4)) + colorBytes;
   // The shader for all pixels needs no counts: it sees a list's length when it loads it. The
   // register sort is the exception, since it takes the list apart as it loads.
   counts_ = byInterval() ? mask != Mask::stencilIncrement
                          : parameters.choice("sort") == "register" && !truncate;
 
   Defines defines = nodes;
-  if (parameters.choice("local") == "fragments") defines["LOCAL_COLOR"] = "1";
+  localColor_ = parameters.choice("local") == "fragments";
+  if (localColor_) defines["LOCAL_COLOR"] = "1";
+  const std::uint32_t entryBytes = 8 + (localColor_ ? colorBytes : 0);  // entry.glsl
   if (!byInterval()) {
     defines["DIRECT"] = nodes["DIRECT"] = "1";
     if (!truncate) defines["FIND_DEEP"] = "1";
-    defineSorts(defines, parameters, device, maxFragments, true);
     intervals.push_back({0, ~0u, maxFragments, defines});
+    defineSorts(intervals.back(), parameters, device, maxFragments, true, entryBytes);
     return;
   }
   if (mask == Mask::lists) defines["LISTED"] = "1";
@@ -76,13 +87,21 @@ Options::Options(const Parameters& parameters, const DeviceInfo& device,
     IntervalPlan plan{low, std::min(upper, maxFragments), std::min(upper, maxFragments), defines};
     if (stencilCounts()) plan.high = std::min(plan.high, stencilLimit);
     const bool own = sortMemory == SortMemory::bma;
-    defineSorts(plan.defines, parameters, device, own ? plan.name : maxFragments, !own);
+    defineSorts(plan, parameters, device, own ? plan.name : maxFragments, !own, entryBytes);
     low = plan.high;
     intervals.push_back(std::move(plan));
     if (stencilCounts() && low == stencilLimit) break;
   }
   // The last one takes what is deeper too, and sorts what it has room for (section 3).
   if (truncate) intervals.back().high = ~0u;
+}
+
+std::string Options::ifRefused(const IntervalPlan& plan) const {
+  return fmt::format(
+      "an invocation sorts up to {} fragments in {} bytes of local memory, which may be more than "
+      "the driver allows: lower 'max_fragments' (now {}){}, or choose sort=register",
+      plan.defines.at("MAX_FRAGMENTS"), plan.localBytes, maxFragments,
+      localColor_ ? ", or choose local=keys or a smaller 'node_color'" : "");
 }
 
 std::vector<Parameter> declareParameters() {

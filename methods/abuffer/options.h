@@ -23,9 +23,10 @@ enum class Mask { stencil, lists, stencilIncrement };
 
 /// One interval of fragments a pixel, and the variant of the sort that runs it.
 struct IntervalPlan {
-  std::uint32_t low, high;  ///< low < fragments <= high; the stencil's values too
-  std::uint32_t name;       ///< its upper bound, as the stages call it
-  Defines defines;          ///< of its shader
+  std::uint32_t low, high;       ///< low < fragments <= high; the stencil's values too
+  std::uint32_t name;            ///< its upper bound, as the stages call it
+  Defines defines;               ///< of its shader
+  std::uint32_t localBytes = 0;  ///< of the arrays that each of its invocations sorts in
 };
 
 /// The parameters of the method, and what follows from them.
@@ -43,6 +44,10 @@ struct Options {
   /// `targetFormat` as shaders name it.
   Options(const Parameters& parameters, const DeviceInfo& device, const std::string& targetFormat);
 
+  /// What to say where a device refuses the shader of an interval: how much local memory it takes,
+  /// and which parameters take less.
+  std::string ifRefused(const IntervalPlan& plan) const;
+
   bool byInterval() const { return sortMemory != SortMemory::max; }
   bool fragmentShader() const { return mask != Mask::lists; }
   /// Whether the capture counts the fragments of each pixel in a buffer.
@@ -52,6 +57,7 @@ struct Options {
 
  private:
   bool counts_;
+  bool localColor_;
 };
 
 /// What the method takes, for its registration.

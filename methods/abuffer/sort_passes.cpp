@@ -10,7 +10,8 @@ constexpr auto stencilTests = Stage::eEarlyFragmentTests | Stage::eLateFragmentT
 
 /// What a full-screen pass with the stencil does, as a description of its pipeline.
 Pipeline::Graphics fullscreen(const char* shader, const Defines& defines, const GpuImage& stencil,
-                              vk::CompareOp compare, vk::StencilOp onPass) {
+                              vk::CompareOp compare, vk::StencilOp onPass,
+                              const std::string& ifRefused = "") {
   const vk::Format format = stencil.description().format;
   const bool hasDepth(stencil.description().aspect & vk::ImageAspectFlagBits::eDepth);
   vk::StencilOpState state(vk::StencilOp::eKeep, onPass, vk::StencilOp::eKeep, compare);
@@ -21,7 +22,8 @@ Pipeline::Graphics fullscreen(const char* shader, const Defines& defines, const 
           .depthFormat = hasDepth ? format : vk::Format::eUndefined,
           .depthTest = false,
           .stencilFormat = format,
-          .stencil = state};
+          .stencil = state,
+          .ifRefused = ifRefused};
 }
 
 }  // namespace
@@ -29,20 +31,24 @@ Pipeline::Graphics fullscreen(const char* shader, const Defines& defines, const 
 SortPasses::SortPasses(const Device& device, const Options& options, const GpuImage* stencil)
     : options_(&options), stencil_(stencil) {
   for (const IntervalPlan& plan : options.intervals) {
+    const std::string ifRefused = options.ifRefused(plan);
     if (!options.fragmentShader())
-      sorts_.push_back(Pipeline::compute(device, "abuffer/resolve.comp", plan.defines));
+      sorts_.push_back(
+          Pipeline::compute(device, "abuffer/resolve.comp", plan.defines, {}, 0, ifRefused));
     else if (!options.byInterval())
       sorts_.push_back(Pipeline::graphics(device, {.vertexShader = "common/fullscreen.vert",
                                                    .fragmentShader = "abuffer/resolve.frag",
                                                    .defines = plan.defines,
                                                    .depthFormat = Target::depthFormat,
-                                                   .depthTest = false}));
+                                                   .depthTest = false,
+                                                   .ifRefused = ifRefused}));
     else
       sorts_.push_back(Pipeline::graphics(
           device,
           fullscreen("abuffer/resolve.frag", plan.defines, *stencil,
                      options.stencilCounts() ? vk::CompareOp::eLessOrEqual : vk::CompareOp::eEqual,
-                     options.stencilCounts() ? vk::StencilOp::eZero : vk::StencilOp::eKeep)));
+                     options.stencilCounts() ? vk::StencilOp::eZero : vk::StencilOp::eKeep,
+                     ifRefused)));
   }
   if (!options.byInterval()) return;
   if (options.stencilCounts()) {

@@ -12,14 +12,18 @@ class LocalMemory : public Method {
   void prepare(const Device& device, const GpuScene&, const Target& target,
                const Parameters& parameters) override {
     passes_ = std::uint32_t(parameters.integer("passes"));
+    const std::int64_t size = parameters.integer("size");
     pipeline_ = Pipeline::graphics(
         device, {.vertexShader = "common/fullscreen.vert",
                  .fragmentShader = "local_memory/local_memory.frag",
-                 .defines = {{"SIZE", fmt::format("{}", parameters.integer("size"))}},
+                 .defines = {{"SIZE", fmt::format("{}", size)}},
                  .colorFormats = {vulkanFormat(target.format())},
                  .depthFormat = Target::depthFormat,
                  .depthTest = false,
-                 .blends = {additive()}});
+                 .blends = {additive()},
+                 .ifRefused = fmt::format("an invocation has an array of {} bytes, which may be "
+                                          "more than the driver allows: lower 'size'",
+                                          16 * size)});
   }
 
   void record(const Frame& frame) override {

@@ -123,7 +123,10 @@ class Lucid : public Method {
 
   // Half-blocks that a workgroup of low_raster works on side by side. They wait for each other, so
   // that 2 are faster than 4 on an NVIDIA H200; 1 is faster yet, but frames of it hung there.
-  const char* lowTeams() const { if (getenv("OITLAB_TEAMS")) return getenv("OITLAB_TEAMS"); return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
+  const char* lowTeams() const {
+    if (getenv("OITLAB_TEAMS")) return getenv("OITLAB_TEAMS");
+    return device_->info().subgroupSize < 32 ? "4u" : "2u";
+  }
 
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
@@ -146,9 +149,9 @@ class Lucid : public Method {
     // A workgroup a part of a bin. On a CPU a large one is no faster.
     const std::uint32_t group = lanes >= 32 ? 256u : 64u;
     for (std::size_t pass = 0; pass < blocksPasses_.size(); ++pass)
-      blocksPasses_[pass] = Pipeline::compute(
-          *device_, "lucid/blocks.comp",
-          {{"PASS", std::to_string(pass)}, {"LOW_TEAMS", lowTeams()}}, {group});
+      blocksPasses_[pass] =
+          Pipeline::compute(*device_, "lucid/blocks.comp",
+                            {{"PASS", std::to_string(pass)}, {"LOW_TEAMS", lowTeams()}}, {group});
     Defines ordered = common;
     ordered["TEAMS"] = ordered["LOW_TEAMS"] = lowTeams();
     ordered_ = Pipeline::compute(*device_, "lucid/ordered.comp", ordered, {}, lanes);
@@ -293,8 +296,8 @@ class Lucid : public Method {
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &binBlocks_, &partFirsts_, &repairs_,
-                                 &counters_})
+    for (const Buffer* buffer :
+         {&list_, &keys_, &blocks_, &binBlocks_, &partFirsts_, &repairs_, &counters_})
       fillBuffer(frame.commands, *buffer, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
@@ -307,7 +310,8 @@ class Lucid : public Method {
   std::uint32_t deepRounds_ = 1;
   std::array<Pipeline, 3> blocksPasses_;
   Pipeline ordered_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
-  Buffer list_, keys_, blocks_, binBlocks_, partFirsts_, repairs_, counters_, readback_, deepPixels_, nodes_;
+  Buffer list_, keys_, blocks_, binBlocks_, partFirsts_, repairs_, counters_, readback_,
+      deepPixels_, nodes_;
 };
 
 const RegisterMethod registered({

@@ -4,15 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include "util/paths.h"
+
 namespace oitlab {
 
-/// The folder of real scenes beside the source tree; not everybody has it.
+/// The folder of real scenes beside the source tree, or beside a bundle; not everybody has it.
 inline std::filesystem::path sharedScenes() {
-  return std::filesystem::path(OITLAB_TEST_SOURCE_DIR) / ".." / "shared" / "scenes";
+  return dataRoot() / ".." / "shared" / "scenes";
 }
 
 #define OITLAB_NEEDS_SHARED_SCENES()                            \
   if (!std::filesystem::is_directory(::oitlab::sharedScenes())) \
-  GTEST_SKIP() << "no ../shared/scenes beside the source tree"
+  GTEST_SKIP() << "no folder " << ::oitlab::sharedScenes().lexically_normal().string()
 
 }  // namespace oitlab

@@ -137,5 +137,7 @@ def build_pdf(out: Path) -> str:
                f"-usepretex=\\def\\generated{{{out.resolve()}}}", "main.tex"]
     done = subprocess.run(command, cwd=PAPER, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        return f"latexmk failed: see {out / 'main.log'}"
+        log = out / "main.log"
+        said = (done.stdout + done.stderr).strip().splitlines() or ["without a word"]
+        return f"latexmk failed: see {log}" if log.is_file() else f"latexmk failed: {said[-1].strip()}"
     return str(out / "main.pdf")

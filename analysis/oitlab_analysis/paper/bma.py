@@ -73,12 +73,17 @@ def table2(found: Measurements, device: str) -> Table:
 
 
 def cells_of(found: Measurements, device: str, method: str) -> tuple[Context | None, pandas.DataFrame | None]:
-    """The context with most measured cells of a method, and their table."""
+    """The context with most measured cells of a method, and their table: of the experiment that is
+    made for it where there is one, since the same cell may have been measured in others too."""
+    def cells(context: Context) -> list[dict]:
+        own = [c for c in context.cells if c["experiment"] == "bma"]
+        return own or context.cells
+
     def count(context: Context) -> int:
-        return sum(c["method"] == method and c["status"] == "ok" for c in context.cells)
+        return sum(c["method"] == method and c["status"] == "ok" for c in cells(context))
 
     context = choose(found.of(device), count)
-    return (context, as_table({c["id"]: c for c in context.cells})) if context else (None, None)
+    return (context, as_table({c["id"]: c for c in cells(context)})) if context else (None, None)
 
 
 def table1(found: Measurements, device: str) -> Table:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..cells import BadResults, Collection, collect
+from ..packs import PACK_SUFFIX
 from ..report import left_out
 from ..statistics import Comparison, compare_cells
 
@@ -56,14 +57,18 @@ class Measurements:
 
 
 def sources_in(paths: list[Path]) -> list[Path]:
-    """Results folders and packs; a folder of neither stands for those right inside it."""
+    """Results folders and packs; any other folder stands for those right inside it.
+
+    Each pack is a source of its own: experiments share cells, which then have the same id.
+    """
     found = []
     for path in paths:
-        holds = path.is_file() or (path / "cells").is_dir() or any(path.glob("*.json.gz"))
-        if holds or not path.is_dir():
+        if not path.is_dir() or (path / "cells").is_dir():
             found.append(path)
+        elif packs := sorted(path.glob("*" + PACK_SUFFIX)):
+            found += packs
         else:
-            found += sorted(p for p in path.iterdir() if p.is_dir())
+            found += sources_in(sorted(p for p in path.iterdir() if p.is_dir())) or [path]
     return found
 
 
@@ -174,7 +179,9 @@ def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, 
         return (not view.startswith("path:"), key[:2] == size, made_for_it, key[2], roles, view == "default",
                 key[0] * key[1], newest)
 
-    chosen = settings[max(settings, key=rank)]
+    # Those of the experiment last, which have the last word: another may have taken a single frame.
+    chosen = sorted(settings[max(settings, key=rank)],
+                    key=lambda group: any(c["experiment"] == experiment for c in group.values()))
     union = {role: cell for group in chosen for role, cell in group.items()}
     whole = [group for group in chosen if len(group) == len(union)]
     return whole[-1] if whole else union

@@ -116,7 +116,7 @@ def latex(table: Table) -> str:
     for name, group in itertools.groupby(table.columns, key=lambda c: c.name.rstrip(" ‡")):
         group = list(group)
         # The last name has the mark, if any: only measured columns are marked.
-        text = latex_text(group[-1].name) if len(group) > 1 else latex_text(name)
+        text = latex_text(group[-1].name)
         names.append(rf"\multicolumn{{{len(group)}}}{{c}}{{{text}}}" if len(group) > 1 else text)
     letters_row = " & ".join(letters.get(c.device, "") for c in table.columns)
     body = [" & ".join(latex_text(_without_interval(row.get(c.key))) for c in table.columns) + r" \\"

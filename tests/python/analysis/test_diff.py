@@ -1,6 +1,7 @@
 """`oitlab diff`: changes of known size are found, and nothing else is."""
 
 import json
+import re
 
 import pytest
 from oitlab_analysis.__main__ import main
@@ -34,6 +35,18 @@ def test_a_change_of_known_size_has_its_ratio_and_verdict(tmp_path):
     assert changes["lucid"].shaders == ["lucid/raster.comp"]
     assert changes["wboit"].blend_verdict == "same" and changes["wboit"].shaders == []
     assert changes["blend"].against_blend is None
+
+
+def test_a_device_note_stands_beside_what_is_compared_through_blend(tmp_path):
+    h200 = DEVICE | {"name": "NVIDIA H200"}
+    a = write(tmp_path / "a", {"lucid": 3.0}, device=h200)
+    b = write(tmp_path / "b", {"lucid": 2.4}, device=h200)
+    result = diff(a, b)
+    for text in (terminal(result), markdown(result, (a, b))):
+        assert "2 of its 66 TPCs" in " ".join(text.split())
+        assert re.search(r"\] ‡", text), "beside the ratio"
+    other = diff(write(tmp_path / "c", {"lucid": 3.0}), write(tmp_path / "d", {"lucid": 2.4}))
+    assert "‡" not in terminal(other)
 
 
 def test_a_slower_device_is_told_from_a_slower_method(tmp_path):

@@ -258,6 +258,35 @@ def test_a_device_note_marks_the_ratios_to_blend(tmp_path):
     assert "HW, µs, H200 (measured)" in text
 
 
+def test_the_note_stands_beside_every_ratio_to_blend_in_every_format(tmp_path):
+    h200 = DEVICE | {"name": "NVIDIA H200"}
+    for scene in ("boxes", "teapot"):
+        write_performance(tmp_path, [scene], device=h200)
+        write_performance(tmp_path, [scene], device=h200, experiment="methods", format="rgba16f")
+        for opacity in (0.5, 0.800000011920929):
+            cells = [make_cell(scene, "blend", {"order": "submission"}, 2, 0.1, **SMALL)]
+            cells += [lucid_cell(scene, 1, 3, 0, {"repair": False, "alpha_threshold": t}, **SMALL)
+                      for t in (0, 1 - 1 / 128)]
+            for cell in cells:
+                cell |= {"size": list(SIZE), "experiment": "alpha_threshold", "device": h200,
+                         "group": f"{scene}{opacity}", "id": f"alpha-{cell['id']}-{opacity}"}
+                cell["scene"] = cell["scene"] | {"opacity": opacity}
+                write_cell(tmp_path, cell, image=False)
+    make_paper([tmp_path], tmp_path / "out")
+    ratios = {"performance-2560x1330": ["SW/HW", "SW/HW, repaired"],
+              "alpha-threshold": ["SW/HW off", "SW/HW on"], "methods": ["relative time"]}
+    for table, names in ratios.items():
+        path = tmp_path / "out" / f"{table}-h200"
+        csv_head, text, tex = (path.with_suffix(s).read_text(encoding="utf-8") for s in (".csv", ".md", ".tex"))
+        assert "2 of its 66 TPCs" in text and "2 of its 66 TPCs" in tex, table
+        for name in names:
+            assert f"{name} ‡ (H200 (measured))" in csv_head.splitlines()[0]
+            assert f"| {name} ‡, H200 (measured) |" in text
+            assert re.search(rf"[{{ ]{re.escape(name)} \\ddag{{}}", tex), (table, name)
+    for unmarked in ("depth-filter", "scenes", "memory"):
+        assert "‡" not in (tmp_path / "out" / f"{unmarked}-h200.md").read_text(encoding="utf-8"), "no ratio to blend"
+
+
 # -- words --------------------------------------------------------------------------------------------
 
 def pairs(published_values, measured_values):
@@ -331,6 +360,26 @@ def test_what_cannot_be_read_is_named_and_the_rest_goes_on(tmp_path):
     assert "half.json: half-written" in said and "gone/cells is empty" in said
     assert "3 cells were given twice, and count once" in said
     assert "half.json" in (tmp_path / "out" / "paper.md").read_text()
+
+
+def test_experiments_that_share_cells_may_be_packed_into_one_folder(tmp_path):
+    """The cell is the same, and so is its id; it was measured in each."""
+    for experiment, time, factor in (("performance", 2.0, 3), ("methods", 5.0, 4), ("memory", 7.0, 9)):
+        for cell in (make_cell("boxes", "blend", {"order": "submission"}, time, 0.1, size=SIZE,
+                               experiment=experiment, **SMALL),
+                     lucid_cell("boxes", time, factor, 100, {"repair": False}, size=SIZE,
+                                experiment=experiment, **SMALL)):
+            write_cell(tmp_path / experiment, cell | {"group": experiment}, image=False)
+        main(["pack", str(tmp_path / experiment), str(tmp_path / "data" / "gpu" / f"{experiment}.json.gz")])
+    said = make_paper([tmp_path / "data"], tmp_path / "out")
+    assert "left out" not in said and "of another file" not in said
+    device = "Example GPU 4000 (measured)"
+    boxes = table_of(tmp_path / "out", "performance-2560x1330-example-gpu-4000")["Boxes"]
+    assert float(boxes[f"HW, µs ({device})"]) == pytest.approx(2000, rel=0.05), "of its own experiment"
+    assert float(boxes[f"SW/HW ({device})"]) == pytest.approx(3, rel=0.01)
+    with open(tmp_path / "out" / "methods-example-gpu-4000.csv", encoding="utf-8", newline="") as file:
+        lucid = next(row for row in csv.DictReader(file) if row["algorithm"] == "LucidRaster")
+    assert float(lucid[f"relative time ({device})"]) == pytest.approx(4, rel=0.01)
 
 
 def test_packs_and_a_folder_of_folders_are_read_too(tmp_path):

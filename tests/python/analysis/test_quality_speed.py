@@ -10,7 +10,7 @@ from oitlab_analysis import scatter, style, sweeps
 from oitlab_analysis.cells import collect
 from oitlab_analysis.metrics import METRICS, wrong_order
 from oitlab_analysis.sections import add_comparisons, make_sections
-from synthetic import lucid_cell, make_cell, make_results, write_cell
+from synthetic import DEVICE, lucid_cell, make_cell, make_results, write_cell
 
 
 def section_of(folder):
@@ -161,3 +161,12 @@ def test_the_alpha_chart_shows_speed_ups(filters):
 def test_there_is_no_curve_without_a_sweep(tmp_path):
     section = section_of(make_results(tmp_path, 5, 2))
     assert sweeps.draw_depth_filter(section) is None and sweeps.draw_alpha_threshold(section) is None
+
+
+def test_the_chart_of_ratios_to_blend_says_what_a_device_note_does(tmp_path):
+    """Charts are copied out of reports, away from the note there."""
+    for name, noted in (("NVIDIA H200", True), ("Example GPU 4000", False)):
+        make_results(tmp_path / name, methods=3, scenes=2, device=DEVICE | {"name": name})
+        figure = drawn(scatter.draw_overall, section_of(tmp_path / name), 0, "rmse")
+        label = figure.axes[0].get_xlabel()
+        assert ("baseline ‡" in label) == ("2 of its 66 TPCs" in " ".join(label.split())) == noted

@@ -2,6 +2,7 @@
 with an environment that knows nothing of the source tree."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -78,8 +79,38 @@ stage_frames = 3
         shader.write_text(text)
 
 
+def test_its_other_verbs_need_no_source_tree(bundle, run, tmp_path):
+    """The papers' figures, the experiments that have them, and the documents that tell of both."""
+    (tmp_path / "tiny.toml").write_text("""
+name = "performance"
+sizes = ["32x18"]
+scenes = ["boxes"]
+methods = ["blend", { method = "lucid", repair = false }]
+[measure]
+time_limit = 0.1
+stage_frames = 3
+""")
+    assert run("run", "tiny.toml", "--detail", "0.01").returncode == 0
+    python = os.environ.get("OITLAB_PYTHON", "/usr/bin/python3")
+    packed = tmp_path / "data" / "performance.json.gz"
+    done = run("pack", "results/performance", packed, OITLAB_PYTHON=python)
+    assert done.returncode == 0 and "2 cells" in done.stdout, done.stderr
+    done = run("paper", packed, "--out", tmp_path / "paper", OITLAB_PYTHON=python)
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "paper" / "paper.md").read_text(encoding="utf-8")
+    assert "LucidRaster (SW) against hardware blending" in text and "| Boxes |" in text
+    assert {"published", "main.tex", "README.md"} <= {p.name for p in (bundle / "paper").iterdir()}
+    assert not (bundle / "paper" / "generated").exists()
+    for name in ("performance", "bma", "views"):
+        assert (bundle / "experiments" / f"{name}.toml").is_file()
+    for document in (bundle / "docs").glob("*.md"):
+        for link in re.findall(r"\]\((?!http)([^)#]+)", document.read_text(encoding="utf-8")):
+            assert (document.parent / link).exists(), f"{document.name} leads to {link}"
+
+
 def test_selftest_runs_the_tests_under_its_own_layer(run):
-    done = run("selftest", "--gtest_filter=Methods.TwoLayers*:Image*", VK_LOADER_DEBUG="layer")
+    done = run("selftest", "--gtest_filter=Methods.TwoLayers*:Image*:*EveryExperimentOfTheProject*",
+               VK_LOADER_DEBUG="layer")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "[  PASSED  ]" in done.stdout and "SKIPPED" not in done.stdout
     layer = [line for line in done.stderr.splitlines() if "libVkLayer_khronos_validation.so" in line]

@@ -89,6 +89,43 @@ def test_shards_make_the_whole(oitlab, tiny, tmp_path):
     assert "0 measured, 6 there before" in done.stderr
 
 
+def test_nothing_is_begun_after_the_time_that_a_job_has(oitlab, tiny, tmp_path):
+    """At most the group that was under way; the same command measures the rest."""
+    results = tmp_path / "results"
+    done = oitlab("run", tiny, "--results", results, "--stop-after", "0.0001")
+    assert done.returncode == 0 and "0 measured" in done.stderr
+    assert "6 not begun when 0.0001 s were over" in done.stderr
+    assert not cells(results)
+    done = oitlab("run", tiny, "--results", results, "--stop-after", "600")
+    assert done.returncode == 0 and "6 measured" in done.stderr and "not begun" not in done.stderr
+    done = oitlab("run", tiny, "--results", results, "--stop-after", "0")
+    assert done.returncode == 2 and "--stop-after" in done.stderr
+
+
+def test_cells_of_one_image_have_one_quality(oitlab, tmp_path):
+    """Whatever is found of an image is found once a group; all have it, and their picture."""
+    experiment = tmp_path / "same.toml"
+    experiment.write_text("""
+sizes = ["48x27", "32x18"]
+scenes = [{ source = "boxes", detail = 0.03 }]
+methods = ["blend", { method = "wboit", weight = "none" }, { method = "abuffer", sort_memory = ["max", "bma"] }]
+[measure]
+time_limit = 0.1
+""")
+    results = tmp_path / "results"
+    assert oitlab("run", experiment, "--results", results).returncode == 0
+    made = cells(results).values()
+    assert len(made) == 8
+    for size in ([48, 27], [32, 18]):
+        here = [c for c in made if c["size"] == size]
+        exact = [c for c in here if c["method"] == "abuffer"]
+        assert exact[0]["image_hash"] == exact[1]["image_hash"]
+        assert exact[0]["quality"] == exact[1]["quality"] and exact[0]["quality"]["rmse"] == 0
+        pictures = {c["image"]["file"]: (results / c["image"]["file"]).read_bytes() for c in here}
+        assert len(pictures) == 4 and len(set(pictures.values())) == 3
+        assert len({c["quality"]["rmse"] for c in here}) == 3
+
+
 def test_a_killed_run_leaves_whole_cells_and_resumes(oitlab, tiny, tmp_path):
     results = tmp_path / "results"
     run = subprocess.Popen([oitlab.program, "run", str(tiny), "--results", str(results)],
