@@ -87,7 +87,7 @@ TEST_F(LucidWorstCases, ListsAboutEveryLimit) {
 
 // Disabled: fails on llvmpipe at 513 to 1024 layers. A repair job of 32 such pixels is more turns
 // than llvmpipe allows an invocation, it stops after 17 of them, and status() does not notice.
-TEST_F(LucidWorstCases, DISABLED_ListsAboutEveryLimitInAFullHalfBlock) {
+TEST_F(LucidWorstCases, ListsAboutEveryLimitInAFullHalfBlock) {
   expectListsAboutEveryLimit(8, 4);
 }
 

@@ -181,16 +181,25 @@ Device::Device(const Options& options)
   const vk::DeviceQueueCreateInfo queueInfo({}, queueFamily_, 1, &priority);
   vk::DeviceCreateInfo deviceInfo({}, queueInfo);
   deviceInfo.setPNext(&enabled.get<vk::PhysicalDeviceFeatures2>());
-  const char* statisticsExtension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+  std::vector<const char*> extensions;
+  auto enable = [&](const char* name, auto& features) {
+    const auto all = physical_.enumerateDeviceExtensionProperties();
+    const bool there = std::any_of(all.begin(), all.end(), [&](const auto& extension) {
+      return extension.extensionName == std::string_view(name);
+    });
+    if (!there) return false;
+    extensions.push_back(name);
+    features.pNext = const_cast<void*>(deviceInfo.pNext);
+    deviceInfo.setPNext(&features);
+    return true;
+  };
   vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics(VK_TRUE);
   if (wantsPipelineStatistics())
-    for (const auto& extension : physical_.enumerateDeviceExtensionProperties())
-      pipelineStatistics_ |= extension.extensionName == std::string_view(statisticsExtension);
-  if (pipelineStatistics_) {
-    deviceInfo.setPEnabledExtensionNames(statisticsExtension);
-    statistics.pNext = const_cast<void*>(deviceInfo.pNext);
-    deviceInfo.setPNext(&statistics);
-  }
+    pipelineStatistics_ = enable(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME, statistics);
+  vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR uniformFlow(VK_TRUE);
+  subgroupUniformControlFlow_ =
+      enable(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME, uniformFlow);
+  deviceInfo.setPEnabledExtensionNames(extensions);
   try {
     device_ = vk::raii::Device(physical_, deviceInfo);
   } catch (const vk::SystemError& error) {

@@ -81,6 +81,9 @@ class Device {
   bool validation() const { return validation_; }
   /// Asked for (gpu/pipeline_statistics.h) and supported.
   bool hasPipelineStatistics() const { return pipelineStatistics_; }
+  /// VK_KHR_shader_subgroup_uniform_control_flow is enabled: shaders may ask that the lanes of a
+  /// subgroup come together again after a branch.
+  bool hasSubgroupUniformControlFlow() const { return subgroupUniformControlFlow_; }
 
   /// Messages of the validation layers so far (warnings and errors). A clean run has none.
   std::vector<std::string> validationMessages() const;
@@ -121,7 +124,7 @@ class Device {
   struct MessageLog;
 
   DeviceInfo info_;
-  bool pipelineStatistics_ = false;
+  bool pipelineStatistics_ = false, subgroupUniformControlFlow_ = false;
   bool validation_ = false;
   std::unique_ptr<MessageLog> log_;
   vk::raii::Context context_;

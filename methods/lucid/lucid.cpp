@@ -18,6 +18,13 @@ std::uint64_t withSlack(std::uint64_t counted) {
   return counted + counted / 16 + 64;
 }
 
+/// Whether a triangle may have a texture or another vertex colour than white.
+bool hasAttributes(const Scene& scene) {
+  return !scene.textures.empty() ||
+         std::any_of(scene.vertices.begin(), scene.vertices.end(),
+                     [](const Vertex& v) { return v.color != 0xffffffffu; });
+}
+
 }  // namespace
 
 class Lucid : public Method {
@@ -26,13 +33,15 @@ class Lucid : public Method {
                const Parameters& parameters) override {
     device_ = &device;
     opaque_ = scene.opaqueCount() > 0;
+    attributes_ = hasAttributes(scene.scene());
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
         raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
     makePipelines(formatName(target.format()));
     const std::uint64_t halfBlocks = std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS;
-    blocks_ = Buffer(device, memory_, "half-blocks", 2 * halfBlocks * sizeof(HalfBlock));
+    blocks_ = Buffer(device, memory_, "half-blocks", halfBlocks * sizeof(HalfBlock));
+    filterJobs_ = Buffer(device, memory_, "depth filter jobs", halfBlocks * sizeof(PixelJob));
     binBlocks_ = Buffer(device, memory_, "half-blocks of high bins", halfBlocks * sizeof(BinBlock));
     counters_ = Buffer(device, memory_, "lucid counters", sizeof(LucidCounters));
     readback_ = Buffer(device, memory_, "lucid counters readback", sizeof(LucidCounters),
@@ -81,7 +90,7 @@ class Lucid : public Method {
     }
     // A short subgroup goes through each list several times.
     const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
-    const std::uint32_t toBlend = c.triHalfBlocks * sweeps;
+    const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
     const bool blended = !verifiesLoops() || c.blended == toBlend;
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
@@ -101,6 +110,9 @@ class Lucid : public Method {
       again = true;
     }
     if (again) return {.recordAgain = true};
+    if (c.repairedPixels != c.pixelsToRepair)
+      fail<DeviceError>("lucid: of {} pixels {} were repaired: {} ends long loops early",
+                        c.pixelsToRepair, c.repairedPixels, device_->info().name);
     if (c.deepCaptured != c.deepNodes || c.deepBlended != c.deepNodes)
       fail<DeviceError>("lucid: of {} fragments in deep pixels {} were captured and {} blended",
                         c.deepNodes, c.deepCaptured, c.deepBlended);
@@ -108,8 +120,7 @@ class Lucid : public Method {
     frontEnd_->addCounters(status.counters);
     status.counters["fragments"] = c.samples;
     status.counters["half_blocks"] = c.triHalfBlocks;
-    status.counters["short_lists"] = c.shortLists;
-    status.counters["low_lists"] = c.lowLists;  // with the short ones that overlap in depth
+    status.counters["filter_jobs"] = c.filterJobs;
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
@@ -134,41 +145,43 @@ class Lucid : public Method {
 
   void makePipelines(const std::string& format) {
     const std::uint32_t lanes = device_->info().subgroupSize;
-    const Defines common = {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
-                            {"TARGET_FORMAT", format},
-                            {"HAS_OPAQUE", opaque_ ? "1" : "0"},
-                            {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"},
-                            {"DEPTH_FILTER", std::to_string(parameters_.integer("depth_filter"))}};
-    auto raster = [&](bool high) {
+    const Defines common = {
+        {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
+        {"TARGET_FORMAT", format},
+        {"HAS_OPAQUE", opaque_ ? "1" : "0"},
+        {"HAS_ATTRIBUTES", attributes_ ? "1" : "0"},
+        {"UNIFORM_CONTROL_FLOW", device_->hasSubgroupUniformControlFlow() ? "1" : "0"},
+        {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
+    auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
       Defines defines = common;
-      defines["HIGH"] = high ? "1" : "0";
-      defines["TEAMS"] = high ? "1u" : lowTeams();
-      defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
+      defines["HIGH"] = list == std::string("HIGH_LIST") ? "1" : "0";
+      defines["TEAMS"] = teams;
+      defines["LIST"] = list;
+      defines["DEPTH_FILTER"] = std::to_string(filter);
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
     };
     // A workgroup a part of a bin. On a CPU a large one is no faster.
-    const std::uint32_t group = lanes >= 32 ? 256u : 64u;
+    const char* group = lanes >= 32 ? "128u" : "64u";
     for (std::size_t pass = 0; pass < blocksPasses_.size(); ++pass)
-      blocksPasses_[pass] =
-          Pipeline::compute(*device_, "lucid/blocks.comp",
-                            {{"PASS", std::to_string(pass)}, {"LOW_TEAMS", lowTeams()}}, {group});
-    Defines ordered = common;
-    ordered["TEAMS"] = ordered["LOW_TEAMS"] = lowTeams();
-    ordered_ = Pipeline::compute(*device_, "lucid/ordered.comp", ordered, {}, lanes);
-    lowRaster_ = raster(false);
-    highRaster_ = raster(true);
+      blocksPasses_[pass] = Pipeline::compute(
+          *device_, "lucid/blocks.comp",
+          {{"PASS", std::to_string(pass)}, {"LOW_TEAMS", lowTeams()}, {"GROUP", group}});
+    const std::int64_t filter = parameters_.integer("depth_filter");
+    ordered_ = raster("ORDERED_LIST", lowTeams(), 0);
+    lowRaster_ = raster("LOW_LIST", lowTeams(), filter);
+    highRaster_ = raster("HIGH_LIST", "1u", filter);
     repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
-    deepCapture_ =
-        Pipeline::compute(*device_, "lucid/deep_capture.comp",
-                          {{"TARGET_FORMAT", format}, {"HAS_OPAQUE", common.at("HAS_OPAQUE")}});
+    deepCapture_ = Pipeline::compute(*device_, "lucid/deep_capture.comp",
+                                     {{"TARGET_FORMAT", format},
+                                      {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
+                                      {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")}});
     deepResolve_ =
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
   }
 
   void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
     const auto compute = Stage::eComputeShader;
-    const BlocksPush push{.frame = front.frame,
-                          .triangles = front.triangles,
+    const BlocksPush push{.triangles = front.triangles,
                           .irregular = front.irregular,
                           .shading = front.shading,
                           .bins = front.bins,
@@ -178,11 +191,12 @@ class Lucid : public Method {
                           .list = list_.address(),
                           .keys = keys_.address(),
                           .blocks = blocks_.address(),
+                          .filterJobs = filterJobs_.address(),
                           .binBlocks = binBlocks_.address(),
                           .partFirsts = partFirsts_.address(),
                           .counters = counters_.address(),
                           .listCapacity = listCapacity_,
-                          .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
+                          .near = frame.camera.near,
                           .size = {frame.target.width(), frame.target.height()}};
     auto run = [&](int pass, std::size_t offset) {
       blocksPasses_[std::size_t(pass)].bind(frame.commands, frame.bindings);
@@ -212,6 +226,7 @@ class Lucid : public Method {
             .list = list_.address(),
             .keys = keys_.address(),
             .blocks = blocks_.address(),
+            .filterJobs = filterJobs_.address(),
             .repairs = repairs_.address(),
             .counters = counters_.address(),
             .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
@@ -277,7 +292,7 @@ class Lucid : public Method {
 
   void makeRoomForRepairs(std::uint64_t jobs) {
     repairs_ = Buffer();
-    repairs_ = Buffer(*device_, memory_, "repair jobs", jobs * sizeof(RepairJob));
+    repairs_ = Buffer(*device_, memory_, "repair jobs", jobs * sizeof(PixelJob));
     repairCapacity_ = std::uint32_t(jobs);
   }
 
@@ -297,21 +312,21 @@ class Lucid : public Method {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
     for (const Buffer* buffer :
-         {&list_, &keys_, &blocks_, &binBlocks_, &partFirsts_, &repairs_, &counters_})
+         {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_, &repairs_, &counters_})
       fillBuffer(frame.commands, *buffer, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
 
   const Device* device_ = nullptr;
-  bool opaque_ = false;
+  bool opaque_ = false, attributes_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
   std::uint32_t deepRounds_ = 1;
   std::array<Pipeline, 3> blocksPasses_;
   Pipeline ordered_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
-  Buffer list_, keys_, blocks_, binBlocks_, partFirsts_, repairs_, counters_, readback_,
-      deepPixels_, nodes_;
+  Buffer list_, keys_, blocks_, filterJobs_, binBlocks_, partFirsts_, repairs_, counters_,
+      readback_, deepPixels_, nodes_;
 };
 
 const RegisterMethod registered({

@@ -1,6 +1,10 @@
 #version 460
-// Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Low
-// raster: LIST = LOW_LIST; high raster: LIST = HIGH_LIST, one team a workgroup.
+// Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Three
+// programs:
+//   ordered  DEPTH_FILTER 0, LIST = ORDERED_LIST: most pixels' fragments come in the order of the sorted
+//            triangles; pixels in which one does not are passed on,
+//   low      LIST = LOW_LIST: these pixels, and half-blocks of longer lists, with the depth filter,
+//   high     LIST = HIGH_LIST: half-blocks of yet longer lists, with the depth filter.
 //
 // Each lane owns a pixel: a subgroup of less than 32 lanes goes through the list several times, and of
 // one of 64 half the lanes own none.
@@ -15,30 +19,53 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 #include "lucid/prepared.glsl"
 #include "lucid/samples.glsl"
 #include "lucid/sort.glsl"
-#include "lucid/sort_key.glsl"
 
 shared vec4 sampleColors[TEAMS * OWNERS];
 shared uvec2 sampleKeys[TEAMS * OWNERS];  // 1 / w, id
 shared uint samplesOf[TEAMS * OWNERS];    // bit i: sample i falls on this pixel
 
 // A workgroup a job, up to a number that every device can dispatch.
-void addJob(HalfBlock block, uint pixels) {
+void addRepair(HalfBlock block, uint pixels) {
   const uint job = atomicAdd(push.counters.c.repairJobs, 1u);
   if (job < 4096u || job % 64u == 0u) atomicAdd(push.counters.c.repair.x, 1u);
-  if (job < push.repairCapacity) push.repairs.at[job] = RepairJob(block, pixels);
+  if (job < push.repairCapacity) push.repairs.at[job] = PixelJob(block, pixels);
+}
+
+// Long lists by rows: llvmpipe ends loops after 65,535 turns, and a GPU shares the work out better.
+void repair(HalfBlock block, uint pixels) {
+  atomicAdd(push.counters.c.pixelsToRepair, bitCount(pixels));
+  if (block.count <= ROW_REPAIR) {
+    addRepair(block, pixels);
+    return;
+  }
+  for (uint row = 0u; row < HALF_BLOCK_HEIGHT; ++row) {
+    const uint inRow = pixels & (0xffu << (HALF_BLOCK_WIDTH * row));
+    if (inRow != 0u) addRepair(block, inRow);
+  }
+}
+
+// To the program with the depth filter.
+void passOn(HalfBlock block, uint pixels) {
+  const uint job = atomicAdd(push.counters.c.filterJobs, 1u);
+  push.filterJobs.at[job] = PixelJob(block, pixels);
+#if VERIFY_LOOPS
+  atomicAdd(push.counters.c.passedOn, block.count * (32u / OWNERS));
+#endif
+  if (job % TEAMS == 0u && job < MAX_GROUPS * TEAMS) atomicAdd(push.counters.c.low.x, 1u);
 }
 
 // Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
 // pixels whose order went wrong.
-uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint placeMask) {
+uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) {
   const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
   const uint firstKey = team * LIST, firstSample = team * OWNERS;
+  const bool owner = lane < OWNERS && (owned & (1u << bit)) != 0u;
   const vec2 pixel = vec2(pixelOf(bit));
   const ivec2 place = corner + ivec2(pixel);
   const float opaque = opaqueDepthAt(place);
   Pixel p;
   clearPixel(p);
-  if (owner) samplesOf[firstSample + lane] = 0u;
+  if (lane < OWNERS) samplesOf[firstSample + lane] = 0u;
 
   uint covered = 0u, samples = 0u, turns = 0u;
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
@@ -76,7 +103,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint
       for (uint chunk = 0u; chunk < b.samples; chunk += OWNERS) {
         ++turns;
         const uvec2 hit = sampleOf(b, chunk);
-        if (owner && chunk + lane < b.samples) {
+        if (lane < OWNERS && chunk + lane < b.samples) {
           const vec2 hitPixel = vec2(pixelOf(hit.y));
           const Prepared t = prepare(hit.x, corner);
           Fragment f;
@@ -92,9 +119,8 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint
         teamBarrier();
         uint arrived = owner ? samplesOf[firstSample + lane] : 0u;
         if (arrived != 0u) samplesOf[firstSample + lane] = 0u;
-        while (arrived != 0u) {
+        for (; arrived != 0u; arrived &= arrived - 1u) {
           const uint i = firstSample + findLSB(arrived);
-          arrived &= arrived - 1u;
           const Fragment f = Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
           if (isHidden(f.invW, opaque)) continue;
           if (!isFull(p)) ++samples;
@@ -107,7 +133,10 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint
   }
   drainPixel(p);
   covered = subgroupOr(covered);
-
+  const bool touched = owner && (covered & (1u << bit)) != 0u;
+#if DEPTH_FILTER == 0
+  if (p.invalid) samples = 0u;
+#endif
   const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
   if (lane == 0u) {
     if (allSamples > 0u) atomicAdd(push.counters.c.samples, allSamples);
@@ -115,31 +144,25 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, bool owner, uint
     atomicAdd(push.counters.c.blended, turns);
 #endif
   }
-  const bool touched = owner && (covered & (1u << bit)) != 0u;
   if (touched) {
-    if (p.invalid && (push.flags & (REPAIR | SHOW_ERRORS)) != 0u) {  // repair.comp composes it
-      if ((push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
-    } else {
-      imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
-    }
+#if DEPTH_FILTER == 0
+    const bool composes = !p.invalid;
+#else
+    const bool composes = !p.invalid || (push.flags & (REPAIR | SHOW_ERRORS)) == 0u;
+    if (p.invalid && (push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
+#endif
+    if (composes) imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
   }
   return touched && p.invalid ? 1u << bit : 0u;
 }
 
-// blocks.comp leaves the keys of short lists out, since ordered.comp needs none.
-uint keyOf(HalfBlock block, ivec2 corner, uint i) {
-  if (HIGH == 1 || block.count > SHORT_LIST) return push.keys.at[block.first + i];
-  const TriHalfBlock item = itemAt(push.list, block.first + i);
-  return sortKey(loadShading(push.shading, item.triangle), corner, item.mask);
-}
-
-void blendHalfBlock(HalfBlock block) {
+void blendHalfBlock(HalfBlock block, uint pixels) {
   const uint lane = gl_SubgroupInvocationID, firstKey = gl_SubgroupID * LIST;
   const ivec2 corner = cornerOf(block.number, push.size);
   // Depths are sorted within their range, so that few bits tell them apart.
   uint low = 0xffffffffu, high = 0u;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
-    const uint key = keyOf(block, corner, i);
+    const uint key = push.keys.at[block.first + i];
     keys[firstKey + i] = key;
     low = min(low, key);
     high = max(high, key);
@@ -151,15 +174,24 @@ void blendHalfBlock(HalfBlock block) {
   sortKeys(firstKey, block.count);
   uint invalid = 0u;
   for (uint begin = 0u; begin < 32u; begin += OWNERS) {
-    const uint owned = (0xffffffffu >> (32u - OWNERS)) << begin;
-    invalid |= sweep(block, corner, owned, min(begin + lane, 31u), lane < OWNERS, (1u << bits) - 1u);
+    const uint owned = pixels & (0xffffffffu >> (32u - OWNERS)) << begin;
+    if (owned != 0u) {
+      invalid |= sweep(block, corner, owned, min(begin + lane, 31u), (1u << bits) - 1u);
+#if VERIFY_LOOPS
+    } else if (lane == 0u) {
+      atomicAdd(push.counters.c.blended, block.count);
+#endif
+    }
     teamBarrier();
   }
   invalid = subgroupOr(invalid);
-  if (lane == 0u && invalid != 0u) {
-    atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
-    if ((push.flags & REPAIR) != 0u) addJob(block, invalid);
-  }
+  if (lane != 0u || invalid == 0u) return;
+#if DEPTH_FILTER == 0
+  passOn(block, invalid);
+#else
+  atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
+  if ((push.flags & REPAIR) != 0u) repair(block, invalid);
+#endif
 }
 
 // A list that is too long to sort here: each of its pixels is a job of its own for repair.comp,
@@ -173,22 +205,38 @@ void handOver(HalfBlock block) {
 #if VERIFY_LOOPS
     atomicAdd(push.counters.c.blended, block.count * (32u / OWNERS));
 #endif
-    for (uint rest = covered; rest != 0u; rest &= rest - 1u) addJob(block, rest & (0u - rest));
+    atomicAdd(push.counters.c.pixelsToRepair, bitCount(covered));
+    for (uint rest = covered; rest != 0u; rest &= rest - 1u) addRepair(block, rest & (0u - rest));
   }
 }
 
-void main() {
+// The same for all lanes, which compilers cannot tell.
+HalfBlock uniformly(HalfBlock block) {
+  return HalfBlock(subgroupBroadcastFirst(block.number), subgroupBroadcastFirst(block.first),
+                   subgroupBroadcastFirst(block.count));
+}
+
+TEAM_MAIN void main() {
   const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  const uint stride = gl_NumWorkGroups.y * gl_NumWorkGroups.x * TEAMS;
+  const uint i = subgroupBroadcastFirst(group * TEAMS + gl_SubgroupID);
 #if HIGH
-  for (uint i = group * TEAMS + gl_SubgroupID; i < push.counters.c.highLists; i += stride) {
-    const HalfBlock block = push.blocks.at[push.halfBlocks - 1u - i];
+  const uint stride = gl_NumWorkGroups.x * TEAMS, count = subgroupBroadcastFirst(push.counters.c.highLists);
+  for (uint job = i; job < count; job += stride) {
+    const HalfBlock block = uniformly(push.blocks.at[push.halfBlocks - 1u - job]);
     if (block.count > LIST) handOver(block);
-    else blendHalfBlock(block);
-#else
-  for (uint i = group * TEAMS + gl_SubgroupID; i < push.counters.c.lowLists; i += stride) {
-    blendHalfBlock(push.blocks.at[push.halfBlocks + i]);
-#endif
+    else blendHalfBlock(block, 0xffffffffu);
     teamBarrier();
   }
+#elif DEPTH_FILTER == 0
+  // One turn a workgroup: which is next is left to the device, where the paper has persistent threads.
+  if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
+    blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
+#else
+  const uint stride = gl_NumWorkGroups.x * TEAMS, count = subgroupBroadcastFirst(push.counters.c.filterJobs);
+  for (uint job = i; job < count; job += stride) {
+    const PixelJob pixels = push.filterJobs.at[job];
+    blendHalfBlock(uniformly(pixels.block), subgroupBroadcastFirst(pixels.pixels));
+    teamBarrier();
+  }
+#endif
 }

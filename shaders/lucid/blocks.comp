@@ -11,7 +11,7 @@
 #include "raster/coverage.glsl"
 #include "raster/records.glsl"
 
-layout(local_size_x_id = 0) in;
+layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
 
 // What of a part fits is kept from counting to writing; what does not is rasterized again. Few parts
@@ -23,7 +23,7 @@ shared uint keptPlaces[KEPT];  // half-block, and above its HALF_BLOCK_BITS the 
 
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
 shared uint kept, base, total;
-shared uint shortLists, lowLists, highLists, firstShort, firstLow, firstHigh;
+shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh;
 shared uint last;
 
 struct Span {
@@ -44,130 +44,159 @@ ivec2 cornerIn(ivec2 region, uint block) {
 
 void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
-  if (lengths[block] > SHORT_LIST)
-    push.keys.at[starts[block] + place] =
-        sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
-}
-
-void take(bool write, Span span, uint slot, uint block, uint mask) {
-  if (mask == 0u) return;
-  if (write) {
-    writeItem(span.region, slot, mask, block, atomicAdd(cursors[block], 1u));
-    return;
-  }
-  const uint place = atomicAdd(counts[block], 1u);
-#if PASS != 1
-  const uint k = atomicAdd(kept, 1u);
-  if (k >= KEPT) return;
-  keptItems[k] = uvec2(slot, mask);
-  keptPlaces[k] = block | place << HALF_BLOCK_BITS;
-#endif
+  push.keys.at[starts[block] + place] =
+      sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
 }
 
 void takeStrip(bool write, Span span, uint slot, int strip, uvec4 masks) {
-  [[unroll]] for (uint c = 0u; c < HALF_BLOCKS_ACROSS; ++c)
-    take(write, span, slot, uint(strip) * HALF_BLOCKS_ACROSS + c, masks[c]);
-}
-
-// Coverage of a strip's half-blocks by rows [first, last] of the bin.
-uvec4 coverStrip(RegionEdges edges, int strip, int first, int lastRow, uint onScreen) {
-  uvec4 masks = uvec4(0u);
-  for (int row = max(first, 4 * strip); row <= min(lastRow, 4 * strip + 3); ++row) {
-    const uint covered = onScreen & rowCoverage(edges, row);
-    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
-  }
-  return masks;
-}
-
-uvec4 coverIrregularStrip(RasterTriangle t, IrregularTriangle source, ShadeTriangle planes, float near,
-                          ivec2 region, int strip, int lastRow, uint onScreen) {
-  uvec4 masks = uvec4(0u);
-  for (int row = 4 * strip; row <= min(lastRow, 4 * strip + 3); ++row) {
-    const uint covered = onScreen & irregularRow(t, source, planes, near, region, row);
-    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
-  }
-  return masks;
-}
-
-// All triangles of the span, or, where there are few, all strips of all triangles.
-void walk(bool write, Span span) {
-  const bool byStrip = false;
-  const uint items = byStrip ? span.count * STRIPS : span.count;
-  const int rows = min(int(push.size.y) - span.region.y, 32);
-  const uint onScreen = bitsBetween(0, min(int(push.size.x) - span.region.x, 32) - 1);
-  for (uint i = gl_LocalInvocationIndex; i < items; i += gl_WorkGroupSize.x) {
-    const uint slot = slotOf(span.bin, span.first + (byStrip ? i / STRIPS : i));
-    const RasterTriangle t = loadTriangle(push.triangles, slot);
-    if (t.flags == 0u) continue;
-    const bool irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
-    const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
-    const int firstRow = irregular ? 0 : max(box.y - span.region.y, 0);
-    const int lastRow = min(irregular ? 31 : box.w - span.region.y, rows - 1);
-    if (firstRow > lastRow) continue;
-    int strip = firstRow / 4, lastStrip = lastRow / 4;
-    if (byStrip) {
-      const int mine = int(i % STRIPS);
-      if (mine < strip || mine > lastStrip) continue;
-      strip = lastStrip = mine;
-    }
-    if (irregular) {
-      const IrregularTriangle source = push.irregular.at[t.flags >> TRIANGLE_INDEX_SHIFT];
-      const ShadeTriangle planes = loadShading(push.shading, slot);
-      const float near = nearPlane(push.frame.c.viewProjection);
-      for (; strip <= lastStrip; ++strip)
-        takeStrip(write, span, slot, strip,
-                  coverIrregularStrip(t, source, planes, near, span.region, strip, lastRow, onScreen));
+#if PASS != 1
+  uint k = 0u;
+  if (!write) k = atomicAdd(kept, uint(dot(vec4(notEqual(masks, uvec4(0u))), vec4(1.0))));
+#endif
+  [[unroll]] for (uint c = 0u; c < HALF_BLOCKS_ACROSS; ++c) {
+    if (masks[c] == 0u) continue;
+    const uint block = uint(strip) * HALF_BLOCKS_ACROSS + c;
+    if (write) {
+      writeItem(span.region, slot, masks[c], block, atomicAdd(cursors[block], 1u));
       continue;
     }
-    const RegionEdges edges = regionEdges(t, span.region);
-    for (; strip <= lastStrip; ++strip)
-      takeStrip(write, span, slot, strip, coverStrip(edges, strip, firstRow, lastRow, onScreen));
+    const uint place = atomicAdd(counts[block], 1u);
+#if PASS != 1
+    if (k < KEPT) {
+      keptItems[k] = uvec2(slot, masks[c]);
+      keptPlaces[k] = block | place << HALF_BLOCK_BITS;
+    }
+    ++k;
+#endif
   }
 }
 
-void writeAll(Span span) {
-  const uint self = gl_LocalInvocationIndex;
-  if (kept > KEPT) {
-    walk(true, span);
-    return;
+// Triangles at work, and the strips that they reach: triangles are of unlike height, and lanes that
+// each kept to one would wait for the tallest.
+shared uvec4 edgeWords[4u * GROUP];  // see storeEdges
+shared uint stripItems[STRIPS * GROUP];  // place of the triangle, strip << 16
+shared uint items;
+
+struct Rows {
+  uint slot;
+  int first, last;  // of the bin
+  bool irregular;
+};
+
+void storeEdges(uint at, Rows rows, RegionEdges r) {
+  edgeWords[4u * at] = uvec4(rows.slot, uint(rows.first | rows.last << 8 | (rows.irregular ? 1 << 16 : 0)),
+                             floatBitsToUint(r.inverseA.xy));
+  edgeWords[4u * at + 1u] = uvec4(r.edge[0].c, r.edge[0].a, r.edge[0].b, floatBitsToUint(r.inverseA.z));
+  edgeWords[4u * at + 2u] = uvec4(r.edge[1].c, r.edge[1].a, r.edge[1].b, r.edge[2].c);
+  edgeWords[4u * at + 3u] = uvec4(r.edge[2].a, r.edge[2].b, 0u, 0u);
+}
+
+RegionEdges loadEdges(uint at, out Rows rows) {
+  const uvec4 w0 = edgeWords[4u * at];
+  const ivec4 w1 = ivec4(edgeWords[4u * at + 1u]), w2 = ivec4(edgeWords[4u * at + 2u]);
+  const ivec4 w3 = ivec4(edgeWords[4u * at + 3u]);
+  rows = Rows(w0.x, int(w0.y & 0xffu), int((w0.y >> 8) & 0xffu), (w0.y >> 16) != 0u);
+  RegionEdges r;
+  r.edge[0] = Edge(w1.x, w1.y, w1.z);
+  r.edge[1] = Edge(w2.x, w2.y, w2.z);
+  r.edge[2] = Edge(w2.w, w3.x, w3.y);
+  r.inverseA = vec3(uintBitsToFloat(w0.zw), intBitsToFloat(w1.w));
+  return r;
+}
+
+// Coverage of a strip's half-blocks.
+uvec4 coverStrip(RegionEdges edges, Rows rows, int strip, ivec2 region, uint onScreen) {
+  uvec4 masks = uvec4(0u);
+  for (int row = max(rows.first, 4 * strip); row <= min(rows.last, 4 * strip + 3); ++row) {
+    uint covered = onScreen;
+    if (rows.irregular)
+      covered &= irregularRow(push.triangles, push.irregular, push.shading, rows.slot,
+                              uint(loadTriangle(push.triangles, rows.slot).flags), push.near, region, row);
+    else covered &= rowCoverage(edges, row);
+    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
   }
-  for (uint k = self; k < kept; k += gl_WorkGroupSize.x) {
+  return masks;
+}
+
+void walk(bool write, Span span) {
+  const uint self = gl_LocalInvocationIndex;
+  const int rowsOnScreen = min(int(push.size.y) - span.region.y, 32);
+  const uint onScreen = bitsBetween(0, min(int(push.size.x) - span.region.x, 32) - 1);
+  for (uint begin = 0u; begin < span.count; begin += GROUP) {
+    if (self == 0u) items = 0u;
+    barrier();
+    if (begin + self < span.count) {
+      Rows rows;
+      rows.slot = slotOf(span.bin, span.first + begin + self);
+      const RasterTriangle t = loadTriangle(push.triangles, rows.slot);
+      rows.irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
+      const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
+      rows.first = rows.irregular ? 0 : max(box.y - span.region.y, 0);
+      rows.last = min(rows.irregular ? 31 : box.w - span.region.y, rowsOnScreen - 1);
+      if (t.flags != 0u && rows.first <= rows.last) {
+        storeEdges(self, rows, regionEdges(t, span.region));
+        const uint first = uint(rows.first) / 4u, last_ = uint(rows.last) / 4u;
+        uint place = atomicAdd(items, last_ - first + 1u);
+        for (uint strip = first; strip <= last_; ++strip) stripItems[place++] = self | strip << 16;
+      }
+    }
+    barrier();
+    for (uint k = self; k < items; k += GROUP) {
+      const uint item = stripItems[k];
+      const int strip = int(item >> 16);
+      Rows rows;
+      const RegionEdges edges = loadEdges(item & 0xffffu, rows);
+      takeStrip(write, span, rows.slot, strip, coverStrip(edges, rows, strip, span.region, onScreen));
+    }
+    barrier();
+  }
+}
+
+void writeKept(Span span) {
+  for (uint k = gl_LocalInvocationIndex; k < kept; k += GROUP) {
     const uint place = keptPlaces[k];
     writeItem(span.region, keptItems[k].x, keptItems[k].y, place & (HALF_BLOCKS - 1u),
               place >> HALF_BLOCK_BITS);
   }
 }
 
+uint halfBlocksOfFrame() {
+  const uvec2 grid = (push.size + BIN_SIZE - 1u) / BIN_SIZE;
+  return grid.x * grid.y * HALF_BLOCKS;
+}
+
 // Makes room for the lists of a bin, of these lengths: `starts`. All invocations take part.
 void makeLists(uint number) {
   const uint self = gl_LocalInvocationIndex;
-  if (self == 0u) shortLists = lowLists = highLists = 0u;
+  if (self == 0u) orderedLists = lowLists = highLists = 0u;
   barrier();
   uint rank = 0u, before = 0u;
   if (self < HALF_BLOCKS) {
-    for (uint b = 0u; b < self; ++b) before += lengths[b];
+    [[unroll]] for (uint b = 0u; b < HALF_BLOCKS; ++b) before += b < self ? lengths[b] : 0u;
     const uint length = lengths[self];
     if (self == HALF_BLOCKS - 1u) total = before + length;
     if (length > LOW_LIST) rank = atomicAdd(highLists, 1u);
-    else if (length > SHORT_LIST) rank = atomicAdd(lowLists, 1u);
-    else if (length > 0u) rank = atomicAdd(shortLists, 1u);
+    else if (length > ORDERED_LIST) rank = atomicAdd(lowLists, 1u);
+    else if (length > 0u) rank = atomicAdd(orderedLists, 1u);
   }
   barrier();
   if (self == 0u) {
     if (total > 0u) base = atomicAdd(push.counters.c.triHalfBlocks, total);
-    if (shortLists > 0u) firstShort = atomicAdd(push.counters.c.shortLists, shortLists);
-    if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.lowLists, lowLists);
+    if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
+    if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.filterJobs, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
   }
   barrier();
   if (self < HALF_BLOCKS) {
     const uint length = lengths[self];
     starts[self] = base + before;
-    const uint place = length > LOW_LIST     ? push.halfBlocks - 1u - (firstHigh + rank)
-                       : length > SHORT_LIST ? push.halfBlocks + firstLow + rank
-                                             : firstShort + rank;
-    if (length > 0u)
-      push.blocks.at[place] = HalfBlock(number * HALF_BLOCKS + self, base + before, length);
+    const HalfBlock block = HalfBlock(number * HALF_BLOCKS + self, base + before, length);
+    if (length > LOW_LIST)
+      push.blocks.at[halfBlocksOfFrame() - 1u - (firstHigh + rank)] = block;
+    else if (length > ORDERED_LIST)
+      push.filterJobs.at[firstLow + rank] = PixelJob(block, 0xffffffffu);
+    else if (length > 0u)
+      push.blocks.at[firstOrdered + rank] = block;
   }
   barrier();
 }
@@ -184,15 +213,10 @@ void goThrough(Part part, uint place) {
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
   if (self == 0u) kept = 0u;
   barrier();
+  const uint own = part.bin * HALF_BLOCKS + self, ownInPart = place * HALF_BLOCKS + self;
+#if PASS == 1
   walk(false, span);
   barrier();
-
-  const uint own = part.bin * HALF_BLOCKS + self, ownInPart = place * HALF_BLOCKS + self;
-#if PASS == 0
-  if (self < HALF_BLOCKS) lengths[self] = counts[self];
-  makeLists(part.bin);
-  if (base + total <= push.listCapacity) writeAll(span);  // counted all the same: the host makes room
-#elif PASS == 1
   if (self < HALF_BLOCKS)
     push.partFirsts.at[ownInPart] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
   memoryBarrierBuffer();
@@ -207,12 +231,23 @@ void goThrough(Part part, uint place) {
   makeLists(part.bin);
   if (last != 0u && self < HALF_BLOCKS) push.binBlocks.at[own].first = starts[self];
 #else
-  if (self < HALF_BLOCKS) {
-    lengths[self] = push.binBlocks.at[own].count;
-    starts[self] = push.binBlocks.at[own].first + push.partFirsts.at[ownInPart];
+  // Counts, then writes what was kept, or what it rasterizes again: one loop, so that the code for both
+  // is there once.
+  for (uint phase = 0u; phase < 2u; ++phase) {
+    if (phase == 0u || kept > KEPT) walk(phase == 1u, span);
+    else writeKept(span);
+    barrier();
+    if (phase == 1u) break;
+#if PASS == 0
+    if (self < HALF_BLOCKS) lengths[self] = counts[self];
+    makeLists(part.bin);
+    if (base + total > push.listCapacity) break;  // counted all the same: the host makes room
+#else
+    if (self < HALF_BLOCKS)
+      starts[self] = push.binBlocks.at[own].first + push.partFirsts.at[ownInPart];
+    barrier();
+#endif
   }
-  barrier();
-  writeAll(span);
 #endif
 }
 
@@ -225,7 +260,7 @@ void main() {
 #if PASS == 0
   const uint parts = push.rasterCounters.c.lowBins, firstPart = 0u;
 #else
-  const uint parts = push.rasterCounters.c.highParts, firstPart = push.halfBlocks / HALF_BLOCKS;
+  const uint parts = push.rasterCounters.c.highParts, firstPart = halfBlocksOfFrame() / HALF_BLOCKS;
 #endif
 #if PASS == 2
   if (push.counters.c.triHalfBlocks > push.listCapacity) return;
@@ -241,10 +276,10 @@ void main() {
   if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < groups) return;
   // The last workgroup to end, of either kind, knows all counts.
   const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
-  const uint short_ = (atomicAdd(push.counters.c.shortLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
-  const uint low = (atomicAdd(push.counters.c.lowLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
+  const uint ordered = (atomicAdd(push.counters.c.orderedLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
+  const uint low = (atomicAdd(push.counters.c.filterJobs, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
   const uint high = atomicAdd(push.counters.c.highLists, 0u);
-  push.counters.c.ordered = dispatchOf(ready ? short_ : 0u);
+  push.counters.c.ordered = dispatchOf(ready ? ordered : 0u);
   push.counters.c.low = Dispatch(ready ? min(low, MAX_GROUPS) : 0u, 1u, 1u);
   push.counters.c.high = Dispatch(ready ? min(high, MAX_GROUPS) : 0u, 1u, 1u);
   push.counters.c.repair = Dispatch(0u, 1u, 1u);

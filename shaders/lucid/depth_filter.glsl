@@ -1,5 +1,6 @@
 // Sample blending (section 2): a pixel's fragments pass through a queue of DEPTH_FILTER places, which
-// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back.
+// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back. With
+// DEPTH_FILTER 0 there is no queue.
 #ifndef OITLAB_LUCID_DEPTH_FILTER_GLSL
 #define OITLAB_LUCID_DEPTH_FILTER_GLSL
 
@@ -11,7 +12,9 @@ struct Pixel {
   float lastInvW;    // of the fragment blended last
   uint lastId;
   bool invalid;      // one came after one that it is in front of
+#if DEPTH_FILTER > 0
   Fragment queue[DEPTH_FILTER];  // front to back
+#endif
 };
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
@@ -24,7 +27,9 @@ void clearPixel(out Pixel p) {
   p.lastInvW = NEAREST;
   p.lastId = 0u;
   p.invalid = false;
+#if DEPTH_FILTER > 0
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
+#endif
 }
 
 bool isFull(Pixel p) { return push.alphaThreshold > 0.0 && p.accumulated.a >= push.alphaThreshold; }
@@ -45,6 +50,9 @@ void pushFragment(inout Pixel p, Fragment f) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
     return;
   }
+#if DEPTH_FILTER == 0
+  blendFragment(p, f);
+#else
   Fragment leaving = p.queue[0], carried = f;
   if (fragmentBefore(f, leaving)) {
     carried = leaving;
@@ -60,10 +68,13 @@ void pushFragment(inout Pixel p, Fragment f) {
   }
   p.queue[DEPTH_FILTER - 1] = carried;
   blendFragment(p, leaving);
+#endif
 }
 
 void drainPixel(inout Pixel p) {
+#if DEPTH_FILTER > 0
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) blendFragment(p, p.queue[i]);
+#endif
 }
 
 #endif

@@ -1,5 +1,7 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader defines HAS_OPAQUE and declares `push`.
+// one pixel. The including shader defines HAS_OPAQUE and HAS_ATTRIBUTES (some transparent triangle has a
+// texture or vertex colours: without the code for these, GPUs have room for more subgroups) and declares
+// `push`.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 
@@ -10,15 +12,17 @@
 
 // What a triangle's fragments need, with the half-block's first sample as the origin.
 struct Prepared {
-  vec4 w;              // 1 / w: at the origin, per pixel right, per pixel down; its lower bound
-  vec4 b1;             // the same of the first weight over w; upper bound of 1 / w
-  vec4 b2;             // of the second; alpha cutoff
-  vec4 n0;             // normal of the corner that weighs 1 - b1 - b2; primitive id
-  vec4 n1;             // difference to it of the others; PREPARED_* bits
-  vec4 n2;
-  vec4 color;          // of the material, times the vertex colour where the corners share one
-  vec4 uvs;            // texture coordinates of the first corner, difference of the second
-  vec4 more;           // difference of the third; vertex colours of the second and third, packed
+  vec4 w;      // 1 / w: at the origin, per pixel right, per pixel down; PREPARED_* bits
+  vec4 n0;     // normal of the corner that weighs 1 - b1 - b2; alpha cutoff
+  vec4 color;  // of the material, times the vertex colour where the corners share one
+  vec4 range;  // least and most 1 / w; primitive id
+  // Not of flat triangles:
+  vec4 b1, b2;   // the weights over w: at the origin, per pixel right, per pixel down
+  vec3 n1, n2;   // normals of the other corners less that of the first
+  // Of textured and coloured ones:
+  vec4 uvs;           // texture coordinates of the first corner, difference of the second
+  vec4 more;          // difference of the third; vertex colours of the second and third, packed
+  uint firstColor;    // of the first corner, packed
 };
 
 struct Fragment {
@@ -70,7 +74,8 @@ float opaqueDepthAt(ivec2 place) {
 #define PREPARED_ATLAS 3u
 #define PREPARED_IGNORE_ALPHA 4u
 #define PREPARED_COLORED 8u  // the corners' colours differ; n2.w is that of the first
-#define PREPARED_MATERIAL_SHIFT 4
+#define PREPARED_FLAT 16u  // one normal, no texture, one colour: nothing to interpolate
+#define PREPARED_MATERIAL_SHIFT 5
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 vec2 pick(vec4 a, vec4 b, uint i) { return i == 0u ? a.xy : i == 1u ? a.zw : i == 2u ? b.xy : b.zw; }
@@ -90,10 +95,12 @@ Prepared prepare(uint slot, ivec2 corner) {
   const vec3 n0 = unpackNormal(s.normals[0]);
   const vec3 n1 = unpackNormal(s.normals[1]) - n0, n2 = unpackNormal(s.normals[2]) - n0;
   Prepared p;
-  uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas, firstColor = 0u;
+  uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas;
+  p.firstColor = 0u;
   if (material.ignoreVertexAlpha != 0u) bits |= PREPARED_IGNORE_ALPHA;
   p.color = material.baseColor;
   p.uvs = p.more = vec4(0.0);
+#if HAS_ATTRIBUTES
   if ((s.flags & (TRIANGLE_COLORED | TRIANGLE_TEXTURED)) != 0u) {
     const uint c = s.flags >> TRIANGLE_CORNER_SHIFT;
     const uint c0 = c & 3u, c1 = (c >> 2) & 3u, c2 = (c >> 4) & 3u;
@@ -102,7 +109,7 @@ Prepared prepare(uint slot, ivec2 corner) {
     const vec2 uv0 = pick(q.uvs01, q.uvs23, c0);
     p.uvs = vec4(uv0, pick(q.uvs01, q.uvs23, c1) - uv0);
     p.more = vec4(pick(q.uvs01, q.uvs23, c2) - uv0, uintBitsToFloat(colors.yz));
-    firstColor = colors.x;
+    p.firstColor = colors.x;
     if (colors.y != colors.x || colors.z != colors.x) {
       bits |= PREPARED_COLORED;
     } else {
@@ -111,48 +118,58 @@ Prepared prepare(uint slot, ivec2 corner) {
       if (material.ignoreVertexAlpha == 0u) p.color.a *= color.a;
     }
   }
-  p.w = vec4(originInvW(s, corner), s.invWSlope, bounds.x);
-  p.b1 = vec4(b1, s.b1Slope, bounds.y);
-  p.b2 = vec4(b2, s.b2Slope, material.alphaCutoff);
-  p.n0 = vec4(n0, uintBitsToFloat(s.id));
-  p.n1 = vec4(n1, uintBitsToFloat(bits));
-  p.n2 = vec4(n2, uintBitsToFloat(firstColor));
+#endif
+  if (s.normals[0] == s.normals[1] && s.normals[0] == s.normals[2] &&
+      (bits & (PREPARED_ATLAS | PREPARED_COLORED)) == 0u)
+    bits |= PREPARED_FLAT;
+  p.w = vec4(originInvW(s, corner), s.invWSlope, uintBitsToFloat(bits));
+  p.n0 = vec4(n0, material.alphaCutoff);
+  p.range = vec4(bounds, uintBitsToFloat(s.id), 0.0);
+  p.b1 = vec4(b1, s.b1Slope, 0.0);
+  p.b2 = vec4(b2, s.b2Slope, 0.0);
+  p.n1 = n1;
+  p.n2 = n2;
   return p;
 }
 
-float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.w.w, p.b1.w, pixel); }
-uint idOf(Prepared p) { return floatBitsToUint(p.n0.w); }
+float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.range.x, p.range.y, pixel); }
+uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }
 
 // The colour (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block; false where
 // the material cuts it out.
 bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
-  precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
-  precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
-  precise const float inverse = 1.0 / invW;
-  const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
-  const uint bits = floatBitsToUint(p.n1.w);
+  const uint bits = floatBitsToUint(p.w.w);
   GpuMaterial material;
   material.baseColor = p.color;
-  material.alphaCutoff = p.b2.w;
-  material.atlas = bits & PREPARED_ATLAS;
+  material.alphaCutoff = p.n0.w;
+  material.atlas = HAS_ATTRIBUTES == 1 ? bits & PREPARED_ATLAS : 0u;
   material.ignoreVertexAlpha = 1u;
   Surface s;
-  s.normal = p.n0.xyz + b1 * p.n1.xyz + b2 * p.n2.xyz;
+  s.normal = p.n0.xyz;
   s.color = vec4(1.0);  // a part of `baseColor`
-  if (material.atlas != 0u) {
-    material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
-    const vec2 uv2 = p.more.xy;
-    s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
-    // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
-    s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
-    s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
-  }
-  if ((bits & PREPARED_COLORED) != 0u) {
-    const vec4 c0 = unpackUnorm4x8(floatBitsToUint(p.n2.w));
-    const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
-                   b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
-    material.baseColor.rgb *= c.rgb;
-    if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
+  if ((bits & PREPARED_FLAT) == 0u) {
+    precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
+    precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
+    precise const float inverse = 1.0 / invW;
+    const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
+    s.normal += b1 * p.n1 + b2 * p.n2;
+#if HAS_ATTRIBUTES
+    if (material.atlas != 0u) {
+      material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
+      const vec2 uv2 = p.more.xy;
+      s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
+      // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
+      s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
+      s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
+    }
+    if ((bits & PREPARED_COLORED) != 0u) {
+      const vec4 c0 = unpackUnorm4x8(p.firstColor);
+      const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
+                     b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
+      material.baseColor.rgb *= c.rgb;
+      if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
+    }
+#endif
   }
   return shade(material, s, color);
 }

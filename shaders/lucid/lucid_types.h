@@ -19,10 +19,11 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS 32u  // of a bin
 #define STRIPS 8u        // rows of half-blocks in a bin
 
-#define SHORT_LIST 32u    // tri-half-blocks that ordered.comp compares with each other
+#define ORDERED_LIST 128u // tri-half-blocks of a half-block that is first blended without depth filter
 #define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
 #define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
+#define ROW_REPAIR 256u   // lists longer than this are repaired by rows of pixels
 
 // Flags of LucidPush.
 #define COUNT_SAMPLES 1u
@@ -47,8 +48,8 @@ struct BinBlock {
   uint partsDone;      // of the bin; in its first half-block
 };
 
-// Pixels of a half-block to be blended again in exact order.
-struct RepairJob {
+// Pixels of a half-block to be blended again, by the depth filter or in exact order.
+struct PixelJob {
   HalfBlock block;
   uint pixels;
 };
@@ -68,11 +69,13 @@ struct DeepPixel {
 
 struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
-  uint shortLists;             // half-blocks of at most SHORT_LIST tri-half-blocks
-  uint lowLists, highLists;    // of at most LOW_LIST, with the short ones that overlap in depth; of more
+  uint orderedLists, highLists;  // half-blocks of at most ORDERED_LIST, and of more than LOW_LIST
   uint groupsDone;             // workgroups of blocks.comp
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
+  uint passedOn;               // those of them that go through two stages
+  uint filterJobs;             // half-blocks with pixels that go through the depth filter
+  uint pixelsToRepair;
   uint repairJobs;             // more than the capacity means overflow
   uint deepPixels;             // pixels too deep for repair.comp: more than the capacity means overflow
   uint deepNodes;              // their fragments: more than the capacity means overflow
@@ -80,7 +83,7 @@ struct LucidCounters {
   uint unfinished;             // deep pixels whose sort wants more rounds
   uint invalidPixels, repairedPixels;
   uint samples;                // fragments: covered, in front of opaque, not cut out
-  Dispatch ordered, low;       // one workgroup for LOW_TEAMS half-blocks
+  Dispatch ordered, low;       // one workgroup for LOW_TEAMS half-blocks, or filter jobs
   Dispatch high, repair;       // for one half-block, for one job
   Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
   Dispatch deepResolve;        // x: DEEP_RESOLVE_GROUP deep pixels each
@@ -90,13 +93,12 @@ struct LucidCounters {
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBlockBuffer { BinBlock at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RepairBuffer { RepairJob at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PixelJobBuffer { PixelJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuffer { DeepPixel at[]; };
 #endif
 
 struct BlocksPush {
-  ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(RasterTriangleBuffer) triangles;
   ADDRESS_OF(IrregularBuffer) irregular;
   ADDRESS_OF(ShadeTriangleBuffer) shading;
@@ -105,13 +107,14 @@ struct BlocksPush {
   ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;
   ADDRESS_OF(TriHalfBlockBuffer) list;
-  ADDRESS_OF(WordBuffer) keys;         // parallel to list: depth to sort by; not of short lists
-  ADDRESS_OF(HalfBlockBuffer) blocks;  // short lists from 0 up, high from the middle down, low up
+  ADDRESS_OF(WordBuffer) keys;         // parallel to list: depth to sort by
+  ADDRESS_OF(HalfBlockBuffer) blocks;  // ordered ones from 0 up, high ones from the end down
+  ADDRESS_OF(PixelJobBuffer) filterJobs;
   ADDRESS_OF(BinBlockBuffer) binBlocks;
   ADDRESS_OF(WordBuffer) partFirsts;  // of each part of a high bin: places in the half-blocks' lists
   ADDRESS_OF(LucidCounterBuffer) counters;
   uint listCapacity;
-  uint halfBlocks;  // of the frame
+  float near;       // distance of the near plane
   uvec2 size;       // of the frame, pixels
 };
 
@@ -123,7 +126,8 @@ struct BlendPush {
   ADDRESS_OF(TriHalfBlockBuffer) list;
   ADDRESS_OF(WordBuffer) keys;
   ADDRESS_OF(HalfBlockBuffer) blocks;
-  ADDRESS_OF(RepairBuffer) repairs;
+  ADDRESS_OF(PixelJobBuffer) filterJobs;
+  ADDRESS_OF(PixelJobBuffer) repairs;
   ADDRESS_OF(LucidCounterBuffer) counters;
   uint halfBlocks;  // of the frame
   uvec2 size;       // of the frame, pixels
@@ -139,7 +143,7 @@ struct RepairPush {
   ADDRESS_OF(ShadeTriangleBuffer) shading;
   ADDRESS_OF(AttributeBuffer) attributes;
   ADDRESS_OF(TriHalfBlockBuffer) list;
-  ADDRESS_OF(RepairBuffer) repairs;
+  ADDRESS_OF(PixelJobBuffer) repairs;
   ADDRESS_OF(LucidCounterBuffer) counters;
   ADDRESS_OF(DeepPixelBuffer) deepPixels;
   ADDRESS_OF(NodeBuffer) nodes;

@@ -5,24 +5,25 @@
 
 #include "lucid/fragment.glsl"
 
-// 9 words of 16 bytes, so that the accesses of neighbouring lanes fall into different banks.
+// 9 words of 16 bytes, so that the accesses of neighbouring lanes fall into different banks. All need
+// the first four, and most of these cost: lanes that read the same word take turns like any others.
 #define PREPARED_WORDS 9u
 shared vec4 preparedWords[PREPARED_COUNT * PREPARED_WORDS];
 
-// The last two words are rarely needed.
 bool hasAttributes(Prepared p) {
-  return (floatBitsToUint(p.n1.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
+  return HAS_ATTRIBUTES == 1 && (floatBitsToUint(p.w.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
 }
 
 void storePrepared(uint at, Prepared p) {
   const uint place = at * PREPARED_WORDS;
   preparedWords[place + 0u] = p.w;
-  preparedWords[place + 1u] = p.b1;
-  preparedWords[place + 2u] = p.b2;
-  preparedWords[place + 3u] = p.n0;
-  preparedWords[place + 4u] = p.n1;
-  preparedWords[place + 5u] = p.n2;
-  preparedWords[place + 6u] = p.color;
+  preparedWords[place + 1u] = p.n0;
+  preparedWords[place + 2u] = p.color;
+  preparedWords[place + 3u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
+  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) != 0u) return;
+  preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
+  preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
+  preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
   if (!hasAttributes(p)) return;
   preparedWords[place + 7u] = p.uvs;
   preparedWords[place + 8u] = p.more;
@@ -32,15 +33,20 @@ Prepared loadPrepared(uint at) {
   const uint place = at * PREPARED_WORDS;
   Prepared p;
   p.w = preparedWords[place + 0u];
-  p.b1 = preparedWords[place + 1u];
-  p.b2 = preparedWords[place + 2u];
-  p.n0 = preparedWords[place + 3u];
-  p.n1 = preparedWords[place + 4u];
-  p.n2 = preparedWords[place + 5u];
-  p.color = preparedWords[place + 6u];
-  if (hasAttributes(p)) {
-    p.uvs = preparedWords[place + 7u];
-    p.more = preparedWords[place + 8u];
+  p.n0 = preparedWords[place + 1u];
+  p.color = preparedWords[place + 2u];
+  p.range = preparedWords[place + 3u];
+  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) == 0u) {
+    p.b1 = preparedWords[place + 4u];
+    p.b2 = preparedWords[place + 5u];
+    const vec4 last = preparedWords[place + 6u];
+    p.n1 = vec3(p.b1.w, p.b2.w, last.w);
+    p.n2 = last.xyz;
+    if (hasAttributes(p)) {
+      p.firstColor = floatBitsToUint(p.range.w);
+      p.uvs = preparedWords[place + 7u];
+      p.more = preparedWords[place + 8u];
+    }
   }
   return p;
 }

@@ -93,10 +93,10 @@ void blendPixel(ivec2 corner, uint bit) {
     atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
 }
 
-void main() {
+TEAM_MAIN void main() {
   const uint jobs = min(push.counters.c.repairJobs, push.repairCapacity);
   for (uint j = gl_WorkGroupID.x; j < jobs; j += gl_NumWorkGroups.x) {
-    const RepairJob job = push.repairs.at[j];
+    const PixelJob job = push.repairs.at[j];
     block = job.block;
     const ivec2 corner = cornerOf(block.number, push.frame.c.size);
     for (uint rest = job.pixels; rest != 0u; rest &= rest - 1u) {

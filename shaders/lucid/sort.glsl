@@ -10,6 +10,8 @@ const uint padding = 0xffffffffu;
 
 shared uint keys[TEAMS * LIST];
 
+#define RANKED 2u  // keys of a lane up to which counting is quicker
+
 // Keys of fixed width: the depth within the list's range in the high bits, front first, and the place
 // in the list in the low ones, as the paper packs them (section 2, phase 2). Equal depths come out in
 // any order: the depth filter puts these right, or the repair.
@@ -25,18 +27,25 @@ uint packKey(float depth, float low, float high, uint place, uint bits) {
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
   teamBarrier();
-  if (count <= SUBGROUP_SIZE) {
-    // Few: each key counts those before it.
-    const uint own = lane < count ? keys[first + lane] : padding;
-    uint rank = 0u;
-    for (uint i = 0u; i < count; ++i) rank += uint(keys[first + i] < own);
+  if (count <= RANKED * SUBGROUP_SIZE) {
+    // Few: each key counts those before it. Independent reads, where bitonic sorting waits for each step.
+    uint own[RANKED], rank[RANKED];
+    [[unroll]] for (uint t = 0u; t < RANKED; ++t) {
+      own[t] = t * SUBGROUP_SIZE + lane < count ? keys[first + t * SUBGROUP_SIZE + lane] : padding;
+      rank[t] = 0u;
+    }
+    for (uint i = 0u; i < count; ++i) {
+      const uint other = keys[first + i];
+      [[unroll]] for (uint t = 0u; t < RANKED; ++t) rank[t] += uint(other < own[t]);
+    }
     teamBarrier();
-    if (lane < count) keys[first + rank] = own;
+    [[unroll]] for (uint t = 0u; t < RANKED; ++t)
+      if (own[t] != padding) keys[first + rank[t]] = own[t];
     teamBarrier();
     return;
   }
   // Bitonic (Batcher 1968), padded to a power of two.
-  uint padded = 2u * SUBGROUP_SIZE;
+  uint padded = 2u * RANKED * SUBGROUP_SIZE;
   while (padded < count) padded *= 2u;
   for (uint i = count + lane; i < padded; i += SUBGROUP_SIZE) keys[first + i] = padding;
   for (uint size = 2u; size <= padded; size *= 2u) {

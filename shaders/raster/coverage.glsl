@@ -4,6 +4,7 @@
 #define OITLAB_RASTER_COVERAGE_GLSL
 
 #include "raster/project.glsl"
+#include "raster/records.glsl"
 
 // c + a * i + b * j >= 0 inside, i and j pixels from the region's first sample: the edge function in
 // units of a pixel, rounded down, which keeps its sign since the steps are whole.
@@ -87,31 +88,41 @@ bool comesBefore(vec3 a, vec3 b) {
   return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
 }
 
-uint irregularRow(RasterTriangle t, IrregularTriangle source, ShadeTriangle planes, float near,
-                  ivec2 region, int j) {
-  const ivec2 v[3] = ivec2[3](t.v01.xy, t.v01.zw, t.v2);
+ivec2 snappedVertex(RasterTriangleBuffer triangles, uint slot, int k) {
+  if (k == 2) return triangles.at[slot].word[1].xy;
+  const ivec4 v01 = triangles.at[slot].word[0];
+  return k == 0 ? v01.xy : v01.zw;
+}
+
+// Vertices are read where they are needed: few triangles are irregular, and registers kept for them
+// would be taken from all.
+uint irregularRow(RasterTriangleBuffer triangles, IrregularBuffer irregular, ShadeTriangleBuffer shading,
+                  uint slot, uint flags, float near, ivec2 region, int j) {
+  const uint index = flags >> TRIANGLE_INDEX_SHIFT;
   uint row = 0xffffffffu;
-  for (int k = 0; k < 3; ++k) {
+  [[dont_unroll]] for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
     const uint both = (1u << k | 1u << next) << TRIANGLE_SNAPPED_SHIFT;
-    if ((t.flags & both) == both) {
-      const Edge e = makeEdge(v[k], v[next], region);
+    if ((flags & both) == both) {
+      const Edge e = makeEdge(snappedVertex(triangles, slot, k), snappedVertex(triangles, slot, next), region);
       int low = 0, high = 31;
       narrow(e, 1.0 / float(e.a), j, low, high);
       row &= bitsBetween(low, high);
     } else {
-      const vec3 n = edgePlane(source.p[k], source.p[next]);
-      const bool owns = comesBefore(source.p[k], source.p[next]);
+      const vec3 from = irregular.at[index].p[k], to = irregular.at[index].p[next];
+      const vec3 n = edgePlane(from, to);
+      const bool owns = comesBefore(from, to);
       const float y = float(region.y + j) + 0.5;
-      for (int i = 0; i < 32; ++i) {
+      [[dont_unroll]] for (int i = 0; i < 32; ++i) {
         precise const float e = n.x * (float(region.x + i) + 0.5) + n.y * y + n.z;
         if (!(e > 0.0 || (e == 0.0 && owns))) row &= ~(1u << i);
       }
     }
   }
+  const ShadeTriangle planes = loadShading(shading, slot);
   // Nothing nearer than the near plane (or behind the eye) is drawn.
   const float dy = float(region.y + j) + 0.5 - planes.anchor.y;
-  for (int i = 0; i < 32; ++i) {
+  [[dont_unroll]] for (int i = 0; i < 32; ++i) {
     const float dx = float(region.x + i) + 0.5 - planes.anchor.x;
     const float invW = planes.invW + planes.invWSlope.x * dx + planes.invWSlope.y * dy;
     if (!(invW > 0.0 && invW * near <= 1.0)) row &= ~(1u << i);
