@@ -1,4 +1,5 @@
 // LucidRaster: right by the CPU's image, watertight, and true in what it counts.
+#include "raster/raster_types.h"
 #include "scene/quads.h"
 #include "support/planted.h"
 #include "support/shared_scenes.h"
@@ -7,6 +8,7 @@
 namespace oitlab::testing {
 namespace {
 
+constexpr int partTriangles = PART_TRIANGLES;
 const Candidate lucid{"lucid"};
 
 class Lucid : public GpuTest {};
@@ -175,12 +177,12 @@ TEST_F(Lucid, CountsAreThoseWorkedOutByHand) {
                              {"invalid_pixels", 0},
                              {"repaired_pixels", 0}};
   for (const auto& [name, value] : expected) EXPECT_EQ(over.at(name), value) << name;
-  // A bin is high from 1024 triangles, the paper's limit. Over five bins they are large quads: of
+  // A bin is high from more triangles than a part has. Over five bins they are large quads: of
   // small ones each is counted as two triangles, degenerate or not.
-  for (const int count : {1023, 1024}) {
+  for (const int count : {partTriangles, partTriangles + 1}) {
     const Counters bins = countersOf(stack(count, 0.01f), 160, 16);
-    EXPECT_EQ(bins.at("bins_low"), count < 1024 ? 5u : 0u);
-    EXPECT_EQ(bins.at("bins_high"), count < 1024 ? 0u : 5u);
+    EXPECT_EQ(bins.at("bins_low"), count == partTriangles ? 5u : 0u);
+    EXPECT_EQ(bins.at("bins_high"), count == partTriangles ? 0u : 5u);
   }
   // A quad within the upper left bin of four, and another that is behind the eye.
   const Scene one = triangleScene({{glm::vec3{-0.9f, 0.2f, 0}, {-0.2f, 0.2f, 0}, {-0.9f, 0.9f, 0}},

@@ -56,7 +56,7 @@ TEST_F(LucidWorstCases, ThousandsOfCoplanarLayers) {
 void expectListsAboutEveryLimit(int width, int height) {
   const auto pixels = std::uint64_t(width) * std::uint64_t(height);
   std::set<std::uint32_t> lengths;
-  for (const std::uint32_t limit : {LOW_LIST, HIGH_LIST, REPAIR_LIST})
+  for (const std::uint32_t limit : {ORDERED_LIST, LOW_LIST, HIGH_LIST, REPAIR_LIST})
     for (const int more : {-1, 0, 1}) lengths.insert(std::uint32_t(int(limit) + more));
   for (const std::uint32_t length : lengths) {
     const Scene scene = layers(int(length), 1.0f, 0.3f, 0.02f);

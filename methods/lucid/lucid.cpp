@@ -132,12 +132,10 @@ class Lucid : public Method {
   // llvmpipe ends long loops early and in silence: there the turns are counted.
   bool verifiesLoops() const { return device_->info().isCpu(); }
 
-  // Half-blocks that a workgroup of low_raster works on side by side. They wait for each other, so
-  // that 2 are faster than 4 on an NVIDIA H200; 1 is faster yet, but frames of it hung there.
-  const char* lowTeams() const {
-    if (getenv("OITLAB_TEAMS")) return getenv("OITLAB_TEAMS");
-    return device_->info().subgroupSize < 32 ? "4u" : "2u";
-  }
+  // Half-blocks that a workgroup of ordered and low raster works on side by side. They wait for
+  // each other, so that a GPU is fastest with 1 (docs/performance.md); a CPU has fewer groups to
+  // start.
+  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
 
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
@@ -161,7 +159,7 @@ class Lucid : public Method {
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
     };
     // A workgroup a part of a bin. On a CPU a large one is no faster.
-    const char* group = lanes >= 32 ? "128u" : "64u";
+    const char* group = lanes >= 32 ? "256u" : "64u";
     for (std::size_t pass = 0; pass < blocksPasses_.size(); ++pass)
       blocksPasses_[pass] = Pipeline::compute(
           *device_, "lucid/blocks.comp",

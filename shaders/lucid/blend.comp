@@ -14,15 +14,12 @@
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { BlendPush push; };
 
-#define PREPARED_COUNT (TEAMS * SUBGROUP_SIZE)
 #include "lucid/depth_filter.glsl"
 #include "lucid/prepared.glsl"
 #include "lucid/samples.glsl"
 #include "lucid/sort.glsl"
 
-shared vec4 sampleColors[TEAMS * OWNERS];
-shared uvec2 sampleKeys[TEAMS * OWNERS];  // 1 / w, id
-shared uint samplesOf[TEAMS * OWNERS];    // bit i: sample i falls on this pixel
+shared uint samplesOf[TEAMS * OWNERS];  // bit i: sample i falls on this pixel
 
 // A workgroup a job, up to a number that every device can dispatch.
 void addRepair(HalfBlock block, uint pixels) {
@@ -44,7 +41,7 @@ void repair(HalfBlock block, uint pixels) {
   }
 }
 
-// To the program with the depth filter.
+// To the program with the depth filter. One workgroup for TEAMS jobs.
 void passOn(HalfBlock block, uint pixels) {
   const uint job = atomicAdd(push.counters.c.filterJobs, 1u);
   push.filterJobs.at[job] = PixelJob(block, pixels);
@@ -79,24 +76,30 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
     turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
     const uint full = push.alphaThreshold > 0.0 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
 
-    // Where triangles cover most of the pixels, each lane shades its own; where they are small, lanes
-    // take samples as they come and hand them to the pixels they fall on.
-    if (2u * b.samples >= OWNERS * b.size) {
-      if (item.mask != 0u) storePrepared(b.place, prepare(item.triangle, corner));
-      teamBarrier();
-      for (uint k = b.at; k < b.at + b.size; ++k) {
-        ++turns;
-        if (!owner || (batch[k].y & (1u << bit)) == 0u) continue;
-        const Prepared t = loadPrepared(k);
-        Fragment f;
-        f.invW = invWOf(t, pixel);
-        f.id = idOf(t);
-        if (isHidden(f.invW, opaque)) continue;
-        if (!isFull(p)) {
-          if (!shadePrepared(t, pixel, f.invW, f.color)) continue;
-          ++samples;
+    // Where triangles cover a good part of the pixels, each lane shades its own; where they are small,
+    // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
+    // as much a sample.
+    if (4u * b.samples >= OWNERS * b.size) {
+      for (uint part = 0u; part < b.size; part += PREPARED_COUNT) {
+        const uint mine = b.place - b.at - part;  // wraps where it is of an earlier part
+        if (item.mask != 0u && mine < PREPARED_COUNT)
+          storePrepared(team * PREPARED_COUNT + mine, prepare(item.triangle, corner));
+        teamBarrier();
+        const uint here = min(b.size - part, PREPARED_COUNT);
+        for (uint k = 0u; k < here; ++k) {
+          ++turns;
+          if (owner && (batch[b.at + part + k].y & (1u << bit)) != 0u) {
+            const Prepared t = loadPrepared(team * PREPARED_COUNT + k);
+            Fragment f;
+            f.invW = invWOf(t, pixel);
+            f.id = idOf(t);
+            const bool visible = !isHidden(f.invW, opaque), full = isFull(p);
+            const bool kept = visible && (full || shadePrepared(t, pixel, f.invW, f.color));
+            if (kept) pushFragment(p, f);
+            samples += uint(kept && !full);
+          }
         }
-        pushFragment(p, f);
+        teamBarrier();
       }
     } else {
       turns += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
@@ -111,8 +114,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
           f.id = idOf(t);
           const bool known = (full & (1u << hit.y)) != 0u;
           if (known || shadePrepared(t, hitPixel, f.invW, f.color)) {
-            sampleColors[firstSample + lane] = f.color;
-            sampleKeys[firstSample + lane] = uvec2(floatBitsToUint(f.invW), f.id);
+            storeSample(lane, f);
             atomicOr(samplesOf[firstSample + hit.y % OWNERS], 1u << lane);
           }
         }
@@ -120,11 +122,11 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
         uint arrived = owner ? samplesOf[firstSample + lane] : 0u;
         if (arrived != 0u) samplesOf[firstSample + lane] = 0u;
         for (; arrived != 0u; arrived &= arrived - 1u) {
-          const uint i = firstSample + findLSB(arrived);
-          const Fragment f = Fragment(uintBitsToFloat(sampleKeys[i].x), sampleKeys[i].y, sampleColors[i]);
-          if (isHidden(f.invW, opaque)) continue;
-          if (!isFull(p)) ++samples;
-          pushFragment(p, f);
+          const Fragment f = loadSample(findLSB(arrived));
+          if (!isHidden(f.invW, opaque)) {
+            samples += uint(!isFull(p));
+            pushFragment(p, f);
+          }
         }
         teamBarrier();
       }
@@ -185,13 +187,14 @@ void blendHalfBlock(HalfBlock block, uint pixels) {
     teamBarrier();
   }
   invalid = subgroupOr(invalid);
-  if (lane != 0u || invalid == 0u) return;
+  if (lane == 0u && invalid != 0u) {
 #if DEPTH_FILTER == 0
-  passOn(block, invalid);
+    passOn(block, invalid);
 #else
-  atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
-  if ((push.flags & REPAIR) != 0u) repair(block, invalid);
+    atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
+    if ((push.flags & REPAIR) != 0u) repair(block, invalid);
 #endif
+  }
 }
 
 // A list that is too long to sort here: each of its pixels is a job of its own for repair.comp,

@@ -17,9 +17,10 @@ layout(push_constant, scalar) uniform Push { BlocksPush push; };
 // What of a part fits is kept from counting to writing; what does not is rasterized again. Few parts
 // of the paper's scenes have more than 700.
 #define KEPT 1024u
-shared uvec2 keptItems[KEPT];  // slot, mask
-shared uint keptPlaces[KEPT];  // half-block, and above its HALF_BLOCK_BITS the place in its list
-#define HALF_BLOCK_BITS 5
+shared uint keptMasks[KEPT];
+shared uint keptPlaces[KEPT];  // half-block, triangle of the part, place in the half-block's list
+#define TRIANGLE_SHIFT 5  // above the half-block: PART_TRIANGLES
+#define PLACE_SHIFT 13
 
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
 shared uint kept, base, total;
@@ -48,7 +49,8 @@ void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
       sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
 }
 
-void takeStrip(bool write, Span span, uint slot, int strip, uvec4 masks) {
+// `number`: of the triangle in its part.
+void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 masks) {
 #if PASS != 1
   uint k = 0u;
   if (!write) k = atomicAdd(kept, uint(dot(vec4(notEqual(masks, uvec4(0u))), vec4(1.0))));
@@ -63,100 +65,73 @@ void takeStrip(bool write, Span span, uint slot, int strip, uvec4 masks) {
     const uint place = atomicAdd(counts[block], 1u);
 #if PASS != 1
     if (k < KEPT) {
-      keptItems[k] = uvec2(slot, masks[c]);
-      keptPlaces[k] = block | place << HALF_BLOCK_BITS;
+      keptMasks[k] = masks[c];
+      keptPlaces[k] = block | number << TRIANGLE_SHIFT | place << PLACE_SHIFT;
     }
     ++k;
 #endif
   }
 }
 
-// Triangles at work, and the strips that they reach: triangles are of unlike height, and lanes that
-// each kept to one would wait for the tallest.
-shared uvec4 edgeWords[4u * GROUP];  // see storeEdges
-shared uint stripItems[STRIPS * GROUP];  // place of the triangle, strip << 16
-shared uint items;
-
-struct Rows {
-  uint slot;
-  int first, last;  // of the bin
-  bool irregular;
-};
-
-void storeEdges(uint at, Rows rows, RegionEdges r) {
-  edgeWords[4u * at] = uvec4(rows.slot, uint(rows.first | rows.last << 8 | (rows.irregular ? 1 << 16 : 0)),
-                             floatBitsToUint(r.inverseA.xy));
-  edgeWords[4u * at + 1u] = uvec4(r.edge[0].c, r.edge[0].a, r.edge[0].b, floatBitsToUint(r.inverseA.z));
-  edgeWords[4u * at + 2u] = uvec4(r.edge[1].c, r.edge[1].a, r.edge[1].b, r.edge[2].c);
-  edgeWords[4u * at + 3u] = uvec4(r.edge[2].a, r.edge[2].b, 0u, 0u);
-}
-
-RegionEdges loadEdges(uint at, out Rows rows) {
-  const uvec4 w0 = edgeWords[4u * at];
-  const ivec4 w1 = ivec4(edgeWords[4u * at + 1u]), w2 = ivec4(edgeWords[4u * at + 2u]);
-  const ivec4 w3 = ivec4(edgeWords[4u * at + 3u]);
-  rows = Rows(w0.x, int(w0.y & 0xffu), int((w0.y >> 8) & 0xffu), (w0.y >> 16) != 0u);
-  RegionEdges r;
-  r.edge[0] = Edge(w1.x, w1.y, w1.z);
-  r.edge[1] = Edge(w2.x, w2.y, w2.z);
-  r.edge[2] = Edge(w2.w, w3.x, w3.y);
-  r.inverseA = vec3(uintBitsToFloat(w0.zw), intBitsToFloat(w1.w));
-  return r;
-}
-
-// Coverage of a strip's half-blocks.
-uvec4 coverStrip(RegionEdges edges, Rows rows, int strip, ivec2 region, uint onScreen) {
+// Coverage of a strip's half-blocks by rows [first, last] of the bin.
+uvec4 coverStrip(RegionEdges edges, int strip, int first, int last_, uint onScreen) {
   uvec4 masks = uvec4(0u);
-  for (int row = max(rows.first, 4 * strip); row <= min(rows.last, 4 * strip + 3); ++row) {
-    uint covered = onScreen;
-    if (rows.irregular)
-      covered &= irregularRow(push.triangles, push.irregular, push.shading, rows.slot,
-                              uint(loadTriangle(push.triangles, rows.slot).flags), push.near, region, row);
-    else covered &= rowCoverage(edges, row);
+  for (int row = max(first, 4 * strip); row <= min(last_, 4 * strip + 3); ++row) {
+    const uint covered = onScreen & rowCoverage(edges, row);
     masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
   }
   return masks;
 }
 
+uvec4 coverIrregularStrip(uint slot, uint flags, ivec2 region, int strip, int last_, uint onScreen) {
+  uvec4 masks = uvec4(0u);
+  for (int row = 4 * strip; row <= min(last_, 4 * strip + 3); ++row) {
+    const uint covered = onScreen & irregularRow(push.triangles, push.irregular, push.shading, slot,
+                                                 flags, push.near, region, row);
+    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
+  }
+  return masks;
+}
+
+// All triangles of the span, or, where there are few, all strips of all triangles.
 void walk(bool write, Span span) {
-  const uint self = gl_LocalInvocationIndex;
-  const int rowsOnScreen = min(int(push.size.y) - span.region.y, 32);
+  const bool byStrip = span.count * STRIPS <= 2u * GROUP;
+  const uint items = byStrip ? span.count * STRIPS : span.count;
+  const int rows = min(int(push.size.y) - span.region.y, 32);
   const uint onScreen = bitsBetween(0, min(int(push.size.x) - span.region.x, 32) - 1);
-  for (uint begin = 0u; begin < span.count; begin += GROUP) {
-    if (self == 0u) items = 0u;
-    barrier();
-    if (begin + self < span.count) {
-      Rows rows;
-      rows.slot = slotOf(span.bin, span.first + begin + self);
-      const RasterTriangle t = loadTriangle(push.triangles, rows.slot);
-      rows.irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
-      const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
-      rows.first = rows.irregular ? 0 : max(box.y - span.region.y, 0);
-      rows.last = min(rows.irregular ? 31 : box.w - span.region.y, rowsOnScreen - 1);
-      if (t.flags != 0u && rows.first <= rows.last) {
-        storeEdges(self, rows, regionEdges(t, span.region));
-        const uint first = uint(rows.first) / 4u, last_ = uint(rows.last) / 4u;
-        uint place = atomicAdd(items, last_ - first + 1u);
-        for (uint strip = first; strip <= last_; ++strip) stripItems[place++] = self | strip << 16;
-      }
+  for (uint i = gl_LocalInvocationIndex; i < items; i += GROUP) {
+    const uint number = byStrip ? i / STRIPS : i, slot = slotOf(span.bin, span.first + number);
+    const RasterTriangle t = loadTriangle(push.triangles, slot);
+    if (t.flags == 0u) continue;
+    const bool irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
+    const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
+    const int firstRow = irregular ? 0 : max(box.y - span.region.y, 0);
+    const int lastRow = min(irregular ? 31 : box.w - span.region.y, rows - 1);
+    if (firstRow > lastRow) continue;
+    int strip = firstRow / 4, lastStrip = lastRow / 4;
+    if (byStrip) {
+      const int mine = int(i % STRIPS);
+      if (mine < strip || mine > lastStrip) continue;
+      strip = lastStrip = mine;
     }
-    barrier();
-    for (uint k = self; k < items; k += GROUP) {
-      const uint item = stripItems[k];
-      const int strip = int(item >> 16);
-      Rows rows;
-      const RegionEdges edges = loadEdges(item & 0xffffu, rows);
-      takeStrip(write, span, rows.slot, strip, coverStrip(edges, rows, strip, span.region, onScreen));
+    if (irregular) {
+      for (; strip <= lastStrip; ++strip)
+        takeStrip(write, span, slot, number, strip,
+                  coverIrregularStrip(slot, t.flags, span.region, strip, lastRow, onScreen));
+      continue;
     }
-    barrier();
+    const RegionEdges edges = regionEdges(t, span.region);
+    for (; strip <= lastStrip; ++strip)
+      takeStrip(write, span, slot, number, strip, coverStrip(edges, strip, firstRow, lastRow, onScreen));
   }
 }
 
 void writeKept(Span span) {
   for (uint k = gl_LocalInvocationIndex; k < kept; k += GROUP) {
     const uint place = keptPlaces[k];
-    writeItem(span.region, keptItems[k].x, keptItems[k].y, place & (HALF_BLOCKS - 1u),
-              place >> HALF_BLOCK_BITS);
+    const uint number = bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT);
+    writeItem(span.region, slotOf(span.bin, span.first + number), keptMasks[k],
+              place & (HALF_BLOCKS - 1u), place >> PLACE_SHIFT);
   }
 }
 
@@ -208,7 +183,7 @@ void goThrough(Part part, uint place) {
   Span span;
   span.bin = push.bins.at[part.bin];
   span.region = ivec2(uvec2(part.bin % grid.x, part.bin / grid.x) * BIN_SIZE);
-  span.first = part.number * PART_TRIANGLES;
+  span.first = part.number * PART_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
   span.count = min(2u * span.bin.quads + span.bin.triangles - span.first, PART_TRIANGLES);
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
   if (self == 0u) kept = 0u;

@@ -38,21 +38,21 @@ bool isFull(Pixel p) { return push.alphaThreshold > 0.0 && p.accumulated.a >= pu
 // the alpha threshold are not blended, but their order is still watched.
 void blendFragment(inout Pixel p, Fragment f) {
   p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
-  if (isFull(p)) return;
-  p.lastInvW = f.invW;
-  p.lastId = f.id;
-  p.accumulated = blendUnder(p.accumulated, f.color);
+  if (!isFull(p)) {
+    p.lastInvW = f.invW;
+    p.lastId = f.id;
+    p.accumulated = blendUnder(p.accumulated, f.color);
+  }
 }
 
 // Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments need no colour.
 void pushFragment(inout Pixel p, Fragment f) {
-  if (isFull(p)) {
-    p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
-    return;
-  }
 #if DEPTH_FILTER == 0
   blendFragment(p, f);
 #else
+  if (isFull(p)) {
+    p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
+  } else {
   Fragment leaving = p.queue[0], carried = f;
   if (fragmentBefore(f, leaving)) {
     carried = leaving;
@@ -68,6 +68,7 @@ void pushFragment(inout Pixel p, Fragment f) {
   }
   p.queue[DEPTH_FILTER - 1] = carried;
   blendFragment(p, leaving);
+  }
 #endif
 }
 

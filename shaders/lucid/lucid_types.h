@@ -19,9 +19,9 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS 32u  // of a bin
 #define STRIPS 8u        // rows of half-blocks in a bin
 
-#define ORDERED_LIST 128u // tri-half-blocks of a half-block that is first blended without depth filter
+#define ORDERED_LIST 64u  // tri-half-blocks of a half-block that is first blended without depth filter
 #define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
-#define HIGH_LIST 2048u   // the same in high_raster; what is longer goes to repair.comp
+#define HIGH_LIST 1024u   // the same in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
 #define ROW_REPAIR 256u   // lists longer than this are repaired by rows of pixels
 

@@ -1,14 +1,18 @@
 // Triangles made ready once, by one lane each, for all lanes of their team to read. The including
-// shader defines PREPARED_COUNT: places in all.
+// shader defines TEAMS.
 #ifndef OITLAB_LUCID_PREPARED_GLSL
 #define OITLAB_LUCID_PREPARED_GLSL
 
 #include "lucid/fragment.glsl"
 
-// 9 words of 16 bytes, so that the accesses of neighbouring lanes fall into different banks. All need
-// the first four, and most of these cost: lanes that read the same word take turns like any others.
-#define PREPARED_WORDS 9u
-shared vec4 preparedWords[PREPARED_COUNT * PREPARED_WORDS];
+// Places of a team. Few, since shared memory is what limits how many subgroups a GPU holds: an NVIDIA
+// H200 gives it 64 KiB of each multiprocessor, whatever it has.
+#define PREPARED_COUNT 10u  // and room for two words of each of 32 lanes: sampleWord()
+
+// Words of 16 bytes, an odd number, so that the accesses of neighbouring lanes fall into different
+// banks. All triangles need the first four; lanes that read the same word take turns like any others.
+#define PREPARED_WORDS (HAS_ATTRIBUTES == 1 ? 9u : 7u)
+shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
 bool hasAttributes(Prepared p) {
   return HAS_ATTRIBUTES == 1 && (floatBitsToUint(p.w.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
@@ -20,13 +24,15 @@ void storePrepared(uint at, Prepared p) {
   preparedWords[place + 1u] = p.n0;
   preparedWords[place + 2u] = p.color;
   preparedWords[place + 3u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
-  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) != 0u) return;
-  preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
-  preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
-  preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
-  if (!hasAttributes(p)) return;
-  preparedWords[place + 7u] = p.uvs;
-  preparedWords[place + 8u] = p.more;
+  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) == 0u) {
+    preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
+    preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
+    preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
+    if (hasAttributes(p)) {
+      preparedWords[place + 7u] = p.uvs;
+      preparedWords[place + 8u] = p.more;
+    }
+  }
 }
 
 Prepared loadPrepared(uint at) {
@@ -49,6 +55,19 @@ Prepared loadPrepared(uint at) {
     }
   }
   return p;
+}
+
+// The same memory, where a team's lanes hand each other samples instead: two words for each lane.
+uint sampleWord(uint lane) { return gl_SubgroupID * PREPARED_COUNT * PREPARED_WORDS + 2u * lane; }
+
+void storeSample(uint lane, Fragment f) {
+  preparedWords[sampleWord(lane)] = f.color;
+  preparedWords[sampleWord(lane) + 1u].xy = vec2(f.invW, uintBitsToFloat(f.id));
+}
+
+Fragment loadSample(uint lane) {
+  const vec2 key = preparedWords[sampleWord(lane) + 1u].xy;
+  return Fragment(key.x, floatBitsToUint(key.y), preparedWords[sampleWord(lane)]);
 }
 
 #endif

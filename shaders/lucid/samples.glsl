@@ -8,8 +8,9 @@
 // Lanes that take a sample, and pixels that a team goes through side by side.
 #define OWNERS min(SUBGROUP_SIZE, 32u)
 
-// The triangles of a batch that have samples: slot, mask, samples of those before.
-shared uvec4 batch[TEAMS * SUBGROUP_SIZE];
+// The triangles of a batch that have samples: slot and mask, and samples of those before.
+shared uvec2 batch[TEAMS * SUBGROUP_SIZE];
+shared uint samplesBefore[TEAMS * SUBGROUP_SIZE];
 
 // Which of a batch's samples the lanes have come to.
 struct Batch {
@@ -31,7 +32,10 @@ Batch makeBatch(uint slot, uint mask) {
   b.size = subgroupAdd(uint(mask != 0u));
   b.begin = mask != 0u ? end - count : 0xffffffffu;
   b.started = 0u;
-  if (mask != 0u) batch[b.place] = uvec4(slot, mask, end - count, 0u);
+  if (mask != 0u) {
+    batch[b.place] = uvec2(slot, mask);
+    samplesBefore[b.place] = end - count;
+  }
   teamBarrier();
   return b;
 }
@@ -57,9 +61,12 @@ uvec2 sampleOf(inout Batch b, uint first) {
   const uint startBits = subgroupOr(starts ? 1u << (b.begin - first) : 0u);
   const uint number = b.started + bitCount(startBits & ((2u << min(lane, 31u)) - 1u)) - 1u;
   b.started += bitCount(startBits);
-  if (lane >= OWNERS || first + lane >= b.samples) return uvec2(0u);
-  const uvec4 triangle = batch[b.at + number];
-  return uvec2(triangle.x, nthBit(triangle.y, first + lane - triangle.z));
+  uvec2 result = uvec2(0u);
+  if (lane < OWNERS && first + lane < b.samples) {
+    const uvec2 triangle = batch[b.at + number];
+    result = uvec2(triangle.x, nthBit(triangle.y, first + lane - samplesBefore[b.at + number]));
+  }
+  return result;
 }
 
 #endif

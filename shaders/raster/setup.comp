@@ -13,6 +13,13 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 shared uint groupSmall, groupLarge, firstSmall, firstLarge;
 shared uint groupTriangles, groupDegenerate, groupBackFacing;
 
+// A Vertex as it lies in memory: whole words, like the records (raster_types.h).
+struct PackedVertex {
+  vec4 positionNormal;
+  vec4 uvColorMaterial;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PackedVertexBuffer { PackedVertex at[]; };
+
 // What the two halves of a quad share.
 struct Quad {
   uvec4 normals;
@@ -85,11 +92,17 @@ void main() {
   ivec4 box[2] = ivec4[2](emptyBox, emptyBox);
   BinBox bins;
   uvec2 firstBin, lastBin;
+  Quad quadShading;
+  PackedVertexBuffer vertices = PackedVertexBuffer(push.frame.c.vertices);
   if (quad < push.quadCount) {
     indices = push.quads.at[quad];
     ids = push.quadIds.at[quad];
     [[unroll]] for (int i = 0; i < 4; ++i)
-      corner[i] = project(viewProjection, size, push.frame.c.vertices.at[indices[i]].position);
+    {
+      const vec4 word = vertices.at[indices[i]].positionNormal;
+      corner[i] = project(viewProjection, size, word.xyz);
+      quadShading.normals[i] = floatBitsToUint(word.w);
+    }
     box[0] = triangleBox(corner[0], corner[1], corner[2], near, size);
     const bool single = indices.z == indices.w;
     if (!single) box[1] = triangleBox(corner[0], corner[2], corner[3], near, size);
@@ -137,21 +150,21 @@ void main() {
   const uint slot = small ? place : push.quadCapacity - 1u - place;
   push.quadBins.at[slot] =
       BinBox(firstBin.x | firstBin.y << 16, lastBin.x | lastBin.y << 16);
-  Quad shared_;
+  vec4 words[4];
   QuadAttributes attributes;
-  attributes.colors = uvec4(push.frame.c.vertices.at[indices.x].color, push.frame.c.vertices.at[indices.y].color,
-                            push.frame.c.vertices.at[indices.z].color, push.frame.c.vertices.at[indices.w].color);
-  shared_.normals = uvec4(push.frame.c.vertices.at[indices.x].normal, push.frame.c.vertices.at[indices.y].normal,
-                          push.frame.c.vertices.at[indices.z].normal, push.frame.c.vertices.at[indices.w].normal);
-  shared_.material = push.frame.c.vertices.at[indices.x].material;
-  shared_.flags = 0u;
-  if (push.frame.c.materials.at[shared_.material].atlas != 0u) shared_.flags |= TRIANGLE_TEXTURED;
-  if (any(notEqual(attributes.colors, uvec4(0xffffffffu)))) shared_.flags |= TRIANGLE_COLORED;
-  if (shared_.flags != 0u) {
-    attributes.uvs01 = vec4(push.frame.c.vertices.at[indices.x].uv, push.frame.c.vertices.at[indices.y].uv);
-    attributes.uvs23 = vec4(push.frame.c.vertices.at[indices.z].uv, push.frame.c.vertices.at[indices.w].uv);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    words[i] = vertices.at[indices[i]].uvColorMaterial;
+    attributes.colors[i] = floatBitsToUint(words[i].z);
+  }
+  quadShading.material = floatBitsToUint(words[0].w);
+  quadShading.flags = 0u;
+  if (push.frame.c.materials.at[quadShading.material].atlas != 0u) quadShading.flags |= TRIANGLE_TEXTURED;
+  if (any(notEqual(attributes.colors, uvec4(0xffffffffu)))) quadShading.flags |= TRIANGLE_COLORED;
+  if (quadShading.flags != 0u) {
+    attributes.uvs01 = vec4(words[0].xy, words[1].xy);
+    attributes.uvs23 = vec4(words[2].xy, words[3].xy);
     push.attributes.at[slot] = attributes;
   }
-  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0], shared_);
-  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1], shared_);
+  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0], quadShading);
+  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1], quadShading);
 }
