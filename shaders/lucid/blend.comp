@@ -220,10 +220,17 @@ HalfBlock uniformly(HalfBlock block) {
 }
 
 TEAM_MAIN void main() {
-  const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+#if HIGH
+  const uint inRow = push.counters.c.high.x;
+#elif DEPTH_FILTER == 0
+  const uint inRow = push.counters.c.ordered.x;
+#else
+  const uint inRow = push.counters.c.low.x;
+#endif
+  const uint group = gl_WorkGroupID.y * inRow + gl_WorkGroupID.x;
   const uint i = subgroupBroadcastFirst(group * TEAMS + gl_SubgroupID);
 #if HIGH
-  const uint stride = gl_NumWorkGroups.x * TEAMS, count = subgroupBroadcastFirst(push.counters.c.highLists);
+  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, count = subgroupBroadcastFirst(push.counters.c.highLists);
   for (uint job = i; job < count; job += stride) {
     const HalfBlock block = uniformly(push.blocks.at[push.halfBlocks - 1u - job]);
     if (block.count > LIST) handOver(block);
@@ -235,7 +242,7 @@ TEAM_MAIN void main() {
   if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
 #else
-  const uint stride = gl_NumWorkGroups.x * TEAMS, count = subgroupBroadcastFirst(push.counters.c.filterJobs);
+  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, count = subgroupBroadcastFirst(push.counters.c.filterJobs);
   for (uint job = i; job < count; job += stride) {
     const PixelJob pixels = push.filterJobs.at[job];
     blendHalfBlock(uniformly(pixels.block), subgroupBroadcastFirst(pixels.pixels));

@@ -233,14 +233,15 @@ Dispatch dispatchOf(uint groups) {
 
 void main() {
 #if PASS == 0
-  const uint parts = push.rasterCounters.c.lowBins, firstPart = 0u;
+  const uint parts = push.rasterCounters.c.lowBins, firstPart = 0u, groupCount = push.rasterCounters.c.low.x;
 #else
   const uint parts = push.rasterCounters.c.highParts, firstPart = halfBlocksOfFrame() / HALF_BLOCKS;
+  const uint groupCount = push.rasterCounters.c.high.x;
 #endif
 #if PASS == 2
   if (push.counters.c.triHalfBlocks > push.listCapacity) return;
 #endif
-  for (uint i = gl_WorkGroupID.x; i < parts; i += gl_NumWorkGroups.x) {
+  for (uint i = gl_WorkGroupID.x; i < parts; i += groupCount) {
     goThrough(push.parts.at[firstPart + i], i);
     barrier();  // the shared counts are used anew
   }

@@ -95,7 +95,7 @@ void blendPixel(ivec2 corner, uint bit) {
 
 TEAM_MAIN void main() {
   const uint jobs = min(push.counters.c.repairJobs, push.repairCapacity);
-  for (uint j = gl_WorkGroupID.x; j < jobs; j += gl_NumWorkGroups.x) {
+  for (uint j = gl_WorkGroupID.x; j < jobs; j += push.counters.c.repair.x) {
     const PixelJob job = push.repairs.at[j];
     block = job.block;
     const ivec2 corner = cornerOf(block.number, push.frame.c.size);

@@ -4,8 +4,7 @@
 
 #extension GL_KHR_memory_scope_semantics : require
 
-// Lanes that part come together again where the control flow joins: only by this is it so, and without
-// it frames hung on an NVIDIA H200, where lanes waited for each other in different places.
+// Lanes that part come together again where the control flow joins: Vulkan promises it only with this.
 #if UNIFORM_CONTROL_FLOW
 #extension GL_EXT_subgroup_uniform_control_flow : require
 #define TEAM_MAIN [[subgroup_uniform_control_flow]]

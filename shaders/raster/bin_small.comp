@@ -8,7 +8,7 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 
 void main() {
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
-  const uint stride = gl_NumWorkGroups.x * SETUP_GROUP;
+  const uint stride = push.counters.c.small.x * SETUP_GROUP;
   for (uint quad = gl_GlobalInvocationID.x; quad < push.counters.c.smallQuads; quad += stride) {
     const BinBox box = push.quadBins.at[quad];
     for (uint y = box.first >> 16; y <= box.last >> 16; ++y)

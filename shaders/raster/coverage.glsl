@@ -124,7 +124,7 @@ uint irregularRow(RasterTriangleBuffer triangles, IrregularBuffer irregular, Sha
   const float dy = float(region.y + j) + 0.5 - planes.anchor.y;
   [[dont_unroll]] for (int i = 0; i < 32; ++i) {
     const float dx = float(region.x + i) + 0.5 - planes.anchor.x;
-    const float invW = planes.invW + planes.invWSlope.x * dx + planes.invWSlope.y * dy;
+    precise const float invW = planes.invW + planes.invWSlope.x * dx + planes.invWSlope.y * dy;
     if (!(invW > 0.0 && invW * near <= 1.0)) row &= ~(1u << i);
   }
   return row;

@@ -88,6 +88,10 @@ struct BinBox {
   uint first, last;
 };
 
+// Arguments of an indirect dispatch. Shaders take the number of their workgroups from here and not from
+// gl_NumWorkGroups. On an NVIDIA H200 (driver 580.159.04) frames hung now and then, always where a loop
+// stepped by gl_NumWorkGroups in a dispatch whose arguments the one before had changed: a step that is
+// read too early, as 0, never ends. A suspicion, not proved; docs/performance.md.
 struct Dispatch {
   uint x, y, z;
 };
