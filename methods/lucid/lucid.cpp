@@ -309,9 +309,9 @@ class Lucid : public Method {
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
-    for (const Buffer* buffer :
-         {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_, &repairs_, &counters_})
-      fillBuffer(frame.commands, *buffer, pattern);
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_,
+                                 &repairs_, &counters_, &deepPixels_, &nodes_})
+      if (*buffer) fillBuffer(frame.commands, *buffer, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
 
