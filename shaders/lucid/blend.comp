@@ -21,10 +21,10 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 
 shared uint samplesOf[TEAMS * OWNERS];  // bit i: sample i falls on this pixel
 
-// A workgroup a job, up to a number that every device can dispatch.
+// A workgroup a job, up to a number that every device can dispatch; these then take several.
 void addRepair(HalfBlock block, uint pixels) {
   const uint job = atomicAdd(push.counters.c.repairJobs, 1u);
-  if (job < 4096u || job % 64u == 0u) atomicAdd(push.counters.c.repair.x, 1u);
+  if (job < MAX_GROUPS) atomicAdd(push.counters.c.repair.x, 1u);
   if (job < push.repairCapacity) push.repairs.at[job] = PixelJob(block, pixels);
 }
 
@@ -211,12 +211,6 @@ void handOver(HalfBlock block) {
     atomicAdd(push.counters.c.pixelsToRepair, bitCount(covered));
     for (uint rest = covered; rest != 0u; rest &= rest - 1u) addRepair(block, rest & (0u - rest));
   }
-}
-
-// The same for all lanes, which compilers cannot tell.
-HalfBlock uniformly(HalfBlock block) {
-  return HalfBlock(subgroupBroadcastFirst(block.number), subgroupBroadcastFirst(block.first),
-                   subgroupBroadcastFirst(block.count));
 }
 
 TEAM_MAIN void main() {

@@ -156,7 +156,7 @@ void makeLists(uint number) {
   }
   barrier();
   if (self == 0u) {
-    if (total > 0u) base = atomicAdd(push.counters.c.triHalfBlocks, total);
+    base = total > 0u ? atomicAdd(push.counters.c.triHalfBlocks, total) : 0u;
     if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
     if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.filterJobs, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
@@ -196,10 +196,13 @@ void goThrough(Part part, uint place) {
     push.partFirsts.at[ownInPart] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
   memoryBarrierBuffer();
   barrier();
+  memoryBarrierBuffer();  // of what the others released, by the one invocation that says so
   const uint parts = (2u * span.bin.quads + span.bin.triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
   if (self == 0u)
     last = uint(atomicAdd(push.binBlocks.at[part.bin * HALF_BLOCKS].partsDone, 1u) + 1u == parts);
+  memoryBarrierBuffer();
   barrier();
+  memoryBarrierBuffer();
   // The others make room for nothing: barriers stay out of branches.
   if (self < HALF_BLOCKS)
     lengths[self] = last != 0u ? atomicAdd(push.binBlocks.at[own].count, 0u) : 0u;
@@ -250,6 +253,7 @@ void main() {
   memoryBarrierBuffer();
   const uint groups = push.rasterCounters.c.low.x + push.rasterCounters.c.high.x;
   if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < groups) return;
+  memoryBarrierBuffer();
   // The last workgroup to end, of either kind, knows all counts.
   const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
   const uint ordered = (atomicAdd(push.counters.c.orderedLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;

@@ -9,8 +9,7 @@ layout(push_constant, scalar) uniform Push { RepairPush push; };
 
 #include "lucid/fragment.glsl"
 
-void main() {
-  const uint number = gl_WorkGroupID.x, self = gl_LocalInvocationIndex;
+void capture(uint number) {
   const HalfBlock block = push.deepPixels.at[number].block;
   const uint bit = push.deepPixels.at[number].bit;
   const ivec2 corner = cornerOf(block.number, push.frame.c.size);
@@ -18,7 +17,7 @@ void main() {
   const float opaque = opaqueDepthAt(corner + ivec2(pixel));
   const uint begin = gl_WorkGroupID.y * DEEP_PART;
   const uint end = min(begin + DEEP_PART, block.count);
-  for (uint i = begin + self; i < end; i += DEEP_GROUP) {
+  for (uint i = begin + gl_LocalInvocationIndex; i < end; i += DEEP_GROUP) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
     const Prepared t = prepare(item.triangle, corner);
@@ -35,4 +34,9 @@ void main() {
     node.next = atomicExchange(push.deepPixels.at[number].head, index);
     push.nodes.at[index] = node;
   }
+}
+
+void main() {
+  const uint deepPixels = min(push.counters.c.deepPixels, push.deepCapacity);
+  for (uint i = gl_WorkGroupID.x; i < deepPixels; i += push.counters.c.deep.x) capture(i);
 }

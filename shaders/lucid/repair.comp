@@ -33,7 +33,7 @@ void handOver(uint bit, uint count) {
   atomicAdd(push.counters.c.deepNodes, count);
   atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
   if (deep >= push.deepCapacity) return;
-  atomicAdd(push.counters.c.deep.x, 1u);
+  if (deep < MAX_GROUPS) atomicAdd(push.counters.c.deep.x, 1u);
   if (deep % DEEP_RESOLVE_GROUP == 0u) atomicAdd(push.counters.c.deepResolve.x, 1u);
   push.deepPixels.at[deep] = DeepPixel(block, bit, LIST_END, 1u, 0u);
 }
@@ -87,19 +87,21 @@ void blendPixel(ivec2 corner, uint bit) {
     }
     teamBarrier();
   }
-  if (lane != 0u) return;
-  imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
-  if (block.count > HIGH_LIST && (push.flags & COUNT_SAMPLES) != 0u)
-    atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
+  if (lane == 0u) {
+    imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
+    if (block.count > HIGH_LIST && (push.flags & COUNT_SAMPLES) != 0u)
+      atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
+  }
 }
 
 TEAM_MAIN void main() {
-  const uint jobs = min(push.counters.c.repairJobs, push.repairCapacity);
-  for (uint j = gl_WorkGroupID.x; j < jobs; j += push.counters.c.repair.x) {
+  const uint jobs = subgroupBroadcastFirst(min(push.counters.c.repairJobs, push.repairCapacity));
+  const uint stride = subgroupBroadcastFirst(push.counters.c.repair.x);
+  for (uint j = gl_WorkGroupID.x; j < jobs; j += stride) {
     const PixelJob job = push.repairs.at[j];
-    block = job.block;
+    block = uniformly(job.block);
     const ivec2 corner = cornerOf(block.number, push.frame.c.size);
-    for (uint rest = job.pixels; rest != 0u; rest &= rest - 1u) {
+    for (uint rest = subgroupBroadcastFirst(job.pixels); rest != 0u; rest &= rest - 1u) {
       blendPixel(corner, findLSB(rest));
       teamBarrier();
     }

@@ -11,7 +11,7 @@ uint sortKey(ShadeTriangle t, ivec2 corner, uint mask) {
                          bitCount(mask & 0xff00ff00u) + 2 * bitCount(mask & 0xffff0000u));
   const vec2 d = vec2(corner) + 0.5 + sums / float(bitCount(mask)) - t.anchor;
   const float invW = t.invW + t.invWSlope.x * d.x + t.invWSlope.y * d.y;
-  return floatBitsToUint(max(invW, 0.0));
+  return invW > 0.0 ? floatBitsToUint(invW) : 0u;  // -0.0 would sort in front of all
 }
 
 #endif

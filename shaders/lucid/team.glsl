@@ -2,6 +2,8 @@
 #ifndef OITLAB_LUCID_TEAM_GLSL
 #define OITLAB_LUCID_TEAM_GLSL
 
+#include "lucid/lucid_types.h"
+
 #extension GL_KHR_memory_scope_semantics : require
 
 // Lanes that part come together again where the control flow joins: Vulkan promises it only with this.
@@ -17,6 +19,12 @@
 void teamBarrier() {
   controlBarrier(gl_ScopeSubgroup, gl_ScopeSubgroup, gl_StorageSemanticsShared,
                  gl_SemanticsAcquireRelease);
+}
+
+// The same for all lanes, which compilers cannot tell.
+HalfBlock uniformly(HalfBlock block) {
+  return HalfBlock(subgroupBroadcastFirst(block.number), subgroupBroadcastFirst(block.first),
+                   subgroupBroadcastFirst(block.count));
 }
 
 #endif

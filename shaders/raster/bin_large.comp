@@ -9,7 +9,10 @@ layout(local_size_x = LARGE_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
 
 void main() {
-#if !COUNT
+#if COUNT
+  // Small and large quads share slots: nothing to count, the host makes room and records again.
+  if (push.counters.c.smallQuads + push.counters.c.largeQuads > push.quadCapacity) return;
+#else
   if (push.counters.c.ready == 0u) return;
 #endif
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
