@@ -4,6 +4,8 @@
 // rows of pixels become half-block masks at once, in shared memory, and go into lists of just the right
 // size.
 //
+// FIRST_LIST: ORDERED_LIST, or 0 where all lists go through the depth filter.
+//
 // PASS 0: bins of one part: counts and writes. PASS 1: counts bins of several parts, the last of which
 // makes room for all. PASS 2: writes these.
 #include "lucid/lucid_types.h"
@@ -151,7 +153,7 @@ void makeLists(uint number) {
     const uint length = lengths[self];
     if (self == HALF_BLOCKS - 1u) total = before + length;
     if (length > LOW_LIST) rank = atomicAdd(highLists, 1u);
-    else if (length > ORDERED_LIST) rank = atomicAdd(lowLists, 1u);
+    else if (length > FIRST_LIST) rank = atomicAdd(lowLists, 1u);
     else if (length > 0u) rank = atomicAdd(orderedLists, 1u);
   }
   barrier();
@@ -168,7 +170,7 @@ void makeLists(uint number) {
     const HalfBlock block = HalfBlock(number * HALF_BLOCKS + self, base + before, length);
     if (length > LOW_LIST)
       push.blocks.at[halfBlocksOfFrame() - 1u - (firstHigh + rank)] = block;
-    else if (length > ORDERED_LIST)
+    else if (length > FIRST_LIST)
       push.filterJobs.at[firstLow + rank] = PixelJob(block, 0xffffffffu);
     else if (length > 0u)
       push.blocks.at[firstOrdered + rank] = block;
