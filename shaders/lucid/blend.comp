@@ -103,6 +103,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
       }
     } else {
       turns += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
+      teamBarrier();
       for (uint chunk = 0u; chunk < b.samples; chunk += OWNERS) {
         ++turns;
         const uvec2 hit = sampleOf(b, chunk);
@@ -131,7 +132,6 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
         teamBarrier();
       }
     }
-    teamBarrier();
   }
   drainPixel(p);
   covered = subgroupOr(covered);

@@ -22,21 +22,22 @@ struct Batch {
   uint started;  // triangles whose first sample was taken
 };
 
-// Each lane brings one triangle, or a mask of 0. All lanes of the subgroup take part.
+// Each lane brings one triangle, or a mask of 0. All lanes of the subgroup take part. What is in `batch`
+// is there for others after the next teamBarrier().
 Batch makeBatch(uint slot, uint mask) {
   Batch b;
   b.at = gl_SubgroupID * SUBGROUP_SIZE;
   const uint count = bitCount(mask), end = subgroupInclusiveAdd(count);
-  b.place = b.at + subgroupExclusiveAdd(uint(mask != 0u));
+  const uvec4 theirs = subgroupBallot(mask != 0u);
+  b.place = b.at + subgroupBallotExclusiveBitCount(theirs);
   b.samples = subgroupAdd(count);
-  b.size = subgroupAdd(uint(mask != 0u));
+  b.size = subgroupBallotBitCount(theirs);
   b.begin = mask != 0u ? end - count : 0xffffffffu;
   b.started = 0u;
   if (mask != 0u) {
     batch[b.place] = uvec2(slot, mask);
     samplesBefore[b.place] = end - count;
   }
-  teamBarrier();
   return b;
 }
 
