@@ -18,10 +18,9 @@ std::uint64_t withSlack(std::uint64_t counted) {
   return counted + counted / 16 + 64;
 }
 
-/// Whether a triangle may have a texture or another vertex colour than white.
-bool hasAttributes(const Scene& scene) {
-  return !scene.textures.empty() ||
-         std::any_of(scene.vertices.begin(), scene.vertices.end(),
+/// Whether a vertex has another colour than white.
+bool hasColors(const Scene& scene) {
+  return std::any_of(scene.vertices.begin(), scene.vertices.end(),
                      [](const Vertex& v) { return v.color != 0xffffffffu; });
 }
 
@@ -33,7 +32,8 @@ class Lucid : public Method {
                const Parameters& parameters) override {
     device_ = &device;
     opaque_ = scene.opaqueCount() > 0;
-    attributes_ = hasAttributes(scene.scene());
+    textures_ = !scene.scene().textures.empty();
+    colors_ = hasColors(scene.scene());
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
@@ -154,7 +154,8 @@ class Lucid : public Method {
         {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
         {"TARGET_FORMAT", format},
         {"HAS_OPAQUE", opaque_ ? "1" : "0"},
-        {"HAS_ATTRIBUTES", attributes_ ? "1" : "0"},
+        {"HAS_TEXTURES", textures_ ? "1" : "0"},
+        {"HAS_ATTRIBUTES", textures_ || colors_ ? "1" : "0"},
         {"UNIFORM_CONTROL_FLOW", device_->hasSubgroupUniformControlFlow() ? "1" : "0"},
         {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
     auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
@@ -182,6 +183,7 @@ class Lucid : public Method {
     deepCapture_ = Pipeline::compute(*device_, "lucid/deep_capture.comp",
                                      {{"TARGET_FORMAT", format},
                                       {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
+                                      {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
                                       {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")}});
     deepResolve_ =
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
@@ -326,7 +328,7 @@ class Lucid : public Method {
   }
 
   const Device* device_ = nullptr;
-  bool opaque_ = false, attributes_ = false;
+  bool opaque_ = false, textures_ = false, colors_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;

@@ -1,7 +1,8 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader defines HAS_OPAQUE and HAS_ATTRIBUTES (some transparent triangle has a
-// texture or vertex colours: without the code for these, GPUs have room for more subgroups) and declares
-// `push`.
+// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, and
+// HAS_ATTRIBUTES (some triangle has a texture or vertex colours). What a scene has not is not in the
+// program: on GPUs its registers are then free for more subgroups, and llvmpipe, which goes through the
+// code of untaken branches, is twice as fast.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 
@@ -142,7 +143,7 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   GpuMaterial material;
   material.baseColor = p.color;
   material.alphaCutoff = p.n0.w;
-  material.atlas = HAS_ATTRIBUTES == 1 ? bits & PREPARED_ATLAS : 0u;
+  material.atlas = HAS_TEXTURES == 1 ? bits & PREPARED_ATLAS : 0u;
   material.ignoreVertexAlpha = 1u;
   Surface s;
   s.normal = p.n0.xyz;
@@ -153,7 +154,7 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
     precise const float inverse = 1.0 / invW;
     const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
     s.normal += b1 * p.n1 + b2 * p.n2;
-#if HAS_ATTRIBUTES
+#if HAS_TEXTURES
     if (material.atlas != 0u) {
       material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
       const vec2 uv2 = p.more.xy;
@@ -162,6 +163,8 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
       s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
       s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
     }
+#endif
+#if HAS_ATTRIBUTES
     if ((bits & PREPARED_COLORED) != 0u) {
       const vec4 c0 = unpackUnorm4x8(p.firstColor);
       const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
