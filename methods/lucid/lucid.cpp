@@ -24,6 +24,14 @@ bool hasColors(const Scene& scene) {
                      [](const Vertex& v) { return v.color != 0xffffffffu; });
 }
 
+/// Whether the corners of a triangle differ in colour.
+bool hasGradients(const Scene& scene) {
+  const auto& v = scene.vertices;
+  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const auto& t) {
+    return v[t.x].color != v[t.y].color || v[t.x].color != v[t.z].color;
+  });
+}
+
 }  // namespace
 
 class Lucid : public Method {
@@ -34,6 +42,7 @@ class Lucid : public Method {
     opaque_ = scene.opaqueCount() > 0;
     textures_ = !scene.scene().textures.empty();
     colors_ = hasColors(scene.scene());
+    gradients_ = colors_ && hasGradients(scene.scene());
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
@@ -155,6 +164,7 @@ class Lucid : public Method {
         {"TARGET_FORMAT", format},
         {"HAS_OPAQUE", opaque_ ? "1" : "0"},
         {"HAS_TEXTURES", textures_ ? "1" : "0"},
+        {"HAS_GRADIENTS", gradients_ ? "1" : "0"},
         {"HAS_ATTRIBUTES", textures_ || colors_ ? "1" : "0"},
         {"UNIFORM_CONTROL_FLOW", device_->hasSubgroupUniformControlFlow() ? "1" : "0"},
         {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
@@ -184,6 +194,7 @@ class Lucid : public Method {
                                      {{"TARGET_FORMAT", format},
                                       {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
                                       {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
+                                      {"HAS_GRADIENTS", common.at("HAS_GRADIENTS")},
                                       {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")}});
     deepResolve_ =
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
@@ -328,7 +339,7 @@ class Lucid : public Method {
   }
 
   const Device* device_ = nullptr;
-  bool opaque_ = false, textures_ = false, colors_ = false;
+  bool opaque_ = false, textures_ = false, colors_ = false, gradients_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;

@@ -1,6 +1,6 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, and
-// HAS_ATTRIBUTES (some triangle has a texture or vertex colours). What a scene has not is not in the
+// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES,
+// HAS_GRADIENTS (some triangle's corners differ in colour) and HAS_ATTRIBUTES (textures or colours). What a scene has not is not in the
 // program: on GPUs its registers are then free for more subgroups, and llvmpipe, which goes through the
 // code of untaken branches, is twice as fast.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
@@ -164,7 +164,7 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
       s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
     }
 #endif
-#if HAS_ATTRIBUTES
+#if HAS_GRADIENTS
     if ((bits & PREPARED_COLORED) != 0u) {
       const vec4 c0 = unpackUnorm4x8(p.firstColor);
       const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +

@@ -11,11 +11,12 @@
 
 // Words of 16 bytes, an odd number, so that the accesses of neighbouring lanes fall into different
 // banks. All triangles need the first four; lanes that read the same word take turns like any others.
-#define PREPARED_WORDS (HAS_ATTRIBUTES == 1 ? 9u : 7u)
+#define INTERPOLATES (HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
+#define PREPARED_WORDS (INTERPOLATES ? 9u : 7u)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
 bool hasAttributes(Prepared p) {
-  return HAS_ATTRIBUTES == 1 && (floatBitsToUint(p.w.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
+  return INTERPOLATES && (floatBitsToUint(p.w.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
 }
 
 void storePrepared(uint at, Prepared p) {
