@@ -75,8 +75,10 @@ class Lucid : public Method {
     // The two write different half-blocks, so that no barrier parts them.
     frame.stage("high_raster", [&] { indirect(highRaster_, offsetof(LucidCounters, high)); });
     frame.stage("low_raster", [&] {
-      indirect(ordered_, offsetof(LucidCounters, ordered));
-      frame.barrier(compute, compute | Stage::eDrawIndirect);
+      if (ordersFirst()) {
+        indirect(ordered_, offsetof(LucidCounters, ordered));
+        frame.barrier(compute, compute | Stage::eDrawIndirect);
+      }
       indirect(lowRaster_, offsetof(LucidCounters, low));
     });
     recordRepair(frame, front, push);
@@ -104,8 +106,7 @@ class Lucid : public Method {
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
           "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
-          "long "
-          "loops early (too many triangles in a bin)",
+          "long loops early (too many triangles in a bin)",
           c.walked, c.expected, c.blended, toBlend, device_->info().name);
     if (c.repairJobs > repairCapacity_) {
       makeRoomForRepairs(withSlack(c.repairJobs));
@@ -133,7 +134,9 @@ class Lucid : public Method {
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
-    status.counters["scratch_bytes"] = list_.bytes() + keys_.bytes() + blocks_.bytes();
+    status.counters["scratch_bytes"] = 0;
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_})
+      status.counters["scratch_bytes"] += buffer->bytes();
     return status;
   }
 
@@ -186,7 +189,7 @@ class Lucid : public Method {
                              {"GROUP", group},
                              {"FIRST_LIST", ordersFirst() ? "ORDERED_LIST" : "0u"}});
     const std::int64_t filter = parameters_.integer("depth_filter");
-    ordered_ = raster("ORDERED_LIST", lowTeams(), 0);
+    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", lowTeams(), 0);
     lowRaster_ = raster("LOW_LIST", lowTeams(), filter);
     highRaster_ = raster("HIGH_LIST", "1u", filter);
     repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);

@@ -75,12 +75,16 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
   }
 }
 
-// Coverage of a strip's half-blocks by rows [first, last] of the bin.
+// A row's part of the masks of its strip's half-blocks.
+uvec4 masksOfRow(uint covered, int row) {
+  return (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
+}
+
+// Coverage of a strip's half-blocks by rows [first, last_] of the bin.
 uvec4 coverStrip(RegionEdges edges, int strip, int first, int last_, uint onScreen) {
   uvec4 masks = uvec4(0u);
   for (int row = max(first, 4 * strip); row <= min(last_, 4 * strip + 3); ++row) {
-    const uint covered = onScreen & rowCoverage(edges, row);
-    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
+    masks |= masksOfRow(onScreen & rowCoverage(edges, row), row);
   }
   return masks;
 }
@@ -90,7 +94,7 @@ uvec4 coverIrregularStrip(uint slot, uint flags, ivec2 region, int strip, int la
   for (int row = 4 * strip; row <= min(last_, 4 * strip + 3); ++row) {
     const uint covered = onScreen & irregularRow(push.triangles, push.irregular, push.shading, slot,
                                                  flags, push.near, region, row);
-    masks |= (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
+    masks |= masksOfRow(covered, row);
   }
   return masks;
 }

@@ -45,7 +45,8 @@ void blendFragment(inout Pixel p, Fragment f) {
   }
 }
 
-// Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments need no colour.
+// Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments
+// need no colour.
 void pushFragment(inout Pixel p, Fragment f) {
 #if DEPTH_FILTER == 0
   blendFragment(p, f);
@@ -53,21 +54,21 @@ void pushFragment(inout Pixel p, Fragment f) {
   if (isFull(p)) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   } else {
-  Fragment leaving = p.queue[0], carried = f;
-  if (fragmentBefore(f, leaving)) {
-    carried = leaving;
-    leaving = f;
-  }
-  [[unroll]] for (int i = 1; i < DEPTH_FILTER; ++i) {
-    if (fragmentBefore(p.queue[i], carried)) {
-      p.queue[i - 1] = p.queue[i];
-    } else {
-      p.queue[i - 1] = carried;
-      carried = p.queue[i];
+    Fragment leaving = p.queue[0], carried = f;
+    if (fragmentBefore(f, leaving)) {
+      carried = leaving;
+      leaving = f;
     }
-  }
-  p.queue[DEPTH_FILTER - 1] = carried;
-  blendFragment(p, leaving);
+    [[unroll]] for (int i = 1; i < DEPTH_FILTER; ++i) {
+      if (fragmentBefore(p.queue[i], carried)) {
+        p.queue[i - 1] = p.queue[i];
+      } else {
+        p.queue[i - 1] = carried;
+        carried = p.queue[i];
+      }
+    }
+    p.queue[DEPTH_FILTER - 1] = carried;
+    blendFragment(p, leaving);
   }
 #endif
 }

@@ -1,8 +1,8 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES,
-// HAS_GRADIENTS (some triangle's corners differ in colour) and HAS_ATTRIBUTES (textures or colours). What a scene has not is not in the
-// program: on GPUs its registers are then free for more subgroups, and llvmpipe, which goes through the
-// code of untaken branches, is twice as fast.
+// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS
+// (some triangle's corners differ in colour) and HAS_ATTRIBUTES (textures or colours). What a scene has
+// not is not in the program: on GPUs it would take registers, and llvmpipe goes through the code of
+// branches that no lane takes.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 

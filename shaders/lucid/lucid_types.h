@@ -19,13 +19,14 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS 32u  // of a bin
 #define STRIPS 8u        // rows of half-blocks in a bin
 
-#define ORDERED_LIST 64u  // tri-half-blocks of a half-block that is first blended without depth filter
-#define LOW_LIST 512u     // tri-half-blocks that these sort in shared memory (section 2, phase 2)
-#define HIGH_LIST 1024u   // the same in high_raster; what is longer goes to repair.comp
+// Tri-half-blocks that the programs of blend.comp sort in shared memory (section 2, phase 2).
+#define ORDERED_LIST 64u  // without the depth filter
+#define LOW_LIST 512u     // with it
+#define HIGH_LIST 1024u   // in high_raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
 #define ROW_REPAIR 256u   // lists longer than this are repaired by rows of pixels
 
-// Flags of LucidPush.
+// Flags of BlendPush and RepairPush.
 #define COUNT_SAMPLES 1u
 #define REPAIR 2u
 #define SHOW_ERRORS 4u

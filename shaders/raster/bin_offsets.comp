@@ -1,7 +1,6 @@
 #version 460
 // Stage 2, phase 2: places of the bins' lists by a prefix sum, the bins' categories, and the parts of
-// these that hold many triangles. One
-// workgroup; each invocation takes a run of neighbouring bins.
+// those that hold many triangles. One workgroup; each invocation takes a run of neighbouring bins.
 #include "raster/raster_types.h"
 
 layout(local_size_x_id = 0) in;
