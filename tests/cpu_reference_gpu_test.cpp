@@ -7,7 +7,7 @@
 namespace oitlab::testing {
 namespace {
 
-const Candidate reference{"reference"};
+const Candidate reference{.method = "reference", .hardware = true};
 
 class CpuReferenceAgainstDevice : public GpuTest {};
 

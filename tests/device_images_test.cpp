@@ -70,6 +70,18 @@ struct Agreement {
   int worst = 0;              ///< steps of a pixel in no doubt
 };
 
+/// In 8-bit sRGB: how far apart two devices may be that snap vertices each in its way.
+double snappingAt(const CpuImage& truth, std::size_t pixel) {
+  const float by = truth.snapping[pixel];
+  double most = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    const auto color = float(truth.color[pixel][c]);
+    most = std::max(most, double(srgbEncode(std::min(color + by, 1.0f)) -
+                                 srgbEncode(std::max(color - by, 0.0f))));
+  }
+  return most;
+}
+
 Agreement compareWhereSure(const Image& image, const Image& other, const CpuImage& truth) {
   Agreement found;
   for (int y = 0; y < truth.height; ++y)
@@ -82,7 +94,7 @@ Agreement compareWhereSure(const Image& image, const Image& other, const CpuImag
         difference = std::max(difference,
                               std::abs(eightBitsOf(image, x, y, c) - eightBitsOf(other, x, y, c)));
       found.worst = std::max(found.worst, difference);
-      if (difference * step > allowed + 1e-9) ++found.differs;
+      if (difference * step > allowed + snappingAt(truth, pixel) + 1e-9) ++found.differs;
     }
   return found;
 }

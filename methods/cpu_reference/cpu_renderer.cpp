@@ -27,7 +27,8 @@ struct Fragment {
   double depth = 0.0;       // near / distance: larger is nearer
   double depthDoubt = 0.0;  // depth may be off by this in float32
   glm::dvec4 color{0.0};
-  bool exists = false;  // else it is only here for its doubt
+  double colorDoubt = 0.0;  // what snapped vertices may change of it, premultiplied
+  bool exists = false;      // else it is only here for its doubt
   std::uint8_t doubts = 0;
 };
 
@@ -35,6 +36,10 @@ double difference(const glm::dvec4& a, const glm::dvec4& b) {
   const glm::dvec3 d = glm::abs(glm::dvec3(a) - glm::dvec3(b));
   return std::max({d.r, d.g, d.b});
 }
+
+// Changes of weights below this change no colour by half a step of 1/255: shading is at most twice
+// as steep as the attributes.
+constexpr double kSteep = 0.5 / 255 / 2;
 
 class RowRenderer {
  public:
@@ -91,8 +96,25 @@ class RowRenderer {
       f.exists = f.exists && !shaded.discarded;
       if (!f.exists && (f.doubts == 0 || (shaded.discarded && !shaded.nearCutoff))) continue;
       f.color = shaded.color;
+      f.colorDoubt = colorDoubt(corners, hit, shaded.color);
       (scene_.alphaModeOf(corners) == AlphaMode::blend ? transparent_ : opaque_).push_back(f);
     }
+  }
+
+  // By how much the colour changes over the distance that vertices are snapped by, in either
+  // direction.
+  double colorDoubt(const glm::uvec3& corners, const Hit& hit, const glm::dvec4& color) const {
+    double changed = 0.0;
+    for (const glm::dvec3& slope : {hit.weightDx, hit.weightDy}) {
+      const glm::dvec3 step = Triangle::edgeDoubt * slope;
+      if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) < kSteep) continue;
+      Hit moved = hit;
+      moved.weight += step;
+      const glm::dvec4 other = shading_.shade(corners, moved).color;
+      const glm::dvec3 d = glm::abs(glm::dvec3(other) * other.a - glm::dvec3(color) * color.a);
+      changed += std::max({d.r, d.g, d.b}) + std::abs(other.a - color.a);
+    }
+    return changed;
   }
 
   // All fragments of one pixel, in order.
@@ -113,6 +135,7 @@ class RowRenderer {
     glm::dvec3 color(0.0);
     double transmittance = 1.0;
     double swaps = 0.0;  // bound on what a wrong order could change
+    double snapping = 0.0;
     double largestDoubt = 0.0;
     for (const Fragment& f : transparent) largestDoubt = std::max(largestDoubt, f.depthDoubt);
     std::uint32_t count = 0;
@@ -129,6 +152,7 @@ class RowRenderer {
         if (g.exists && tooCloseToOrder(f, g))
           swaps += transmittance * alpha * g.color.a * difference(f.color, g.color);
       }
+      snapping += transmittance * f.colorDoubt;
       color += transmittance * alpha * glm::dvec3(f.color);
       transmittance *= 1.0 - alpha;
       ++count;
@@ -137,6 +161,7 @@ class RowRenderer {
     image.color[pixel] = glm::dvec4(color + transmittance * glm::dvec3(back.color), 1.0);
     image.fragments[pixel] = count;
     image.doubts[pixel] = doubts;
+    image.snapping[pixel] = float(snapping + transmittance * back.colorDoubt);
   }
 
   static bool mayBeInFrontOf(const Fragment& a, const Fragment& b) {
@@ -174,11 +199,12 @@ CpuImage renderOnCpu(const Scene& scene, const SceneAtlases& atlases, const Came
     for (int y = box.y0; y < box.y1; ++y) trianglesOfRow[std::size_t(y)].push_back(id);
   }
 
-  CpuImage image{width, height, {}, {}, {}};
+  CpuImage image{width, height, {}, {}, {}, {}};
   const std::size_t pixels = std::size_t(width) * std::size_t(height);
   image.color.resize(pixels);
   image.fragments.resize(pixels);
   image.doubts.resize(pixels);
+  image.snapping.resize(pixels);
   parallelFor(std::size_t(height), [&](std::size_t y) {
     RowRenderer(scene, shading, projection, double(camera.near))
         .render(int(y), trianglesOfRow[y], image);

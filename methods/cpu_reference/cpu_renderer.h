@@ -32,6 +32,10 @@ struct CpuImage {
   std::vector<glm::dvec4> color;         ///< linear, over the opaque background: alpha is 1
   std::vector<std::uint32_t> fragments;  ///< transparent ones that were blended
   std::vector<std::uint8_t> doubts;      ///< bits of namespace doubt
+  /// What a device that snaps vertices to 1/256 pixel may make of the colour, by interpolating over
+  /// triangles that are moved or bent so much: more than nothing where they are small or seen at
+  /// grazing angles.
+  std::vector<float> snapping;
 
   std::size_t index(int x, int y) const {
     return std::size_t(y) * std::size_t(width) + std::size_t(x);

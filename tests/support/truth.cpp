@@ -9,7 +9,7 @@ glm::dvec4 colorAt(const CpuImage& image, int x, int y) {
 
 }  // namespace
 
-Verdict judge(const Image& image, const CpuImage& truth, double tolerance) {
+Verdict judge(const Image& image, const CpuImage& truth, double tolerance, bool hardware) {
   Verdict verdict;
   for (int y = 0; y < truth.height; ++y)
     for (int x = 0; x < truth.width; ++x) {
@@ -19,7 +19,8 @@ Verdict judge(const Image& image, const CpuImage& truth, double tolerance) {
             std::max(difference, std::abs(double(image.at(x, y)[c]) - colorAt(truth, x, y)[c]));
       const std::uint8_t doubts = truth.doubts[truth.index(x, y)];
       if (doubts == 0) verdict.worst = std::max(verdict.worst, difference);
-      if (!(difference <= tolerance))
+      const double snapping = hardware ? double(truth.snapping[truth.index(x, y)]) : 0.0;
+      if (!(difference <= tolerance + snapping))
         ++(doubts == 0                  ? verdict.wrong
            : doubts & doubt::depthOrder ? verdict.orders
                                         : verdict.edges);
@@ -33,7 +34,7 @@ void expectTruth(const Candidate& candidate, const Scene& scene, const Camera& c
   const CpuImage truth = renderOnCpu(scene, camera, width, height);
   RenderFixture fixture(scene, std::uint32_t(width), std::uint32_t(height));
   const auto exact = fixture.render(candidate.method, candidate.parameters, camera);
-  const Verdict verdict = judge(exact.image, truth, allowed);
+  const Verdict verdict = judge(exact.image, truth, allowed, candidate.hardware);
   const double pixels = double(width) * height;
   // Every layer brings its own edges near a sample, so the shares are of pixels where there are
   // few layers, and of fragments where (hair, pipes) there are many.

@@ -13,7 +13,8 @@ struct Verdict {
   double worst = 0.0;        ///< difference of a pixel in no doubt
 };
 
-Verdict judge(const Image& image, const CpuImage& truth, double tolerance);
+/// `hardware`: allows for what devices make of the colours by snapping vertices, too.
+Verdict judge(const Image& image, const CpuImage& truth, double tolerance, bool hardware = false);
 
 /// Of a pixel in no doubt. Measured on llvmpipe: 0.001/255 where there is no texture.
 inline constexpr double tolerance = 2.0 / 255;
@@ -28,6 +29,7 @@ inline constexpr double textureTolerance = 4.0 / 255;
 struct Candidate {
   std::string method;
   std::map<std::string, std::string> parameters = {};
+  bool hardware = false;  ///< its fragments are made by the device's rasterizer
 };
 
 /// Expects the method's image to be the CPU renderer's, where that is in no doubt.
