@@ -36,6 +36,9 @@ class Method {
   /// on return the target must hold the finished image, writes not yet made visible.
   virtual void record(const Frame& frame) = 0;
 
+  /// Whether record() calls Frame::finishTarget(), once, and leaves the target alone until then.
+  virtual bool finishesTarget() const { return false; }
+
   /// After the device is done with the frame.
   virtual Status status() = 0;
 

@@ -36,10 +36,10 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       options_(options),
       binColumns_(divideUp(target.width(), BIN_SIZE)),
       binRows_(divideUp(target.height(), BIN_SIZE)),
+      zeroFill_(device),
       setup_(Pipeline::compute(device, "raster/setup.comp")),
       countLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "1"}})),
-      offsets_(Pipeline::compute(device, "raster/bin_offsets.comp", {},
-                                 {std::min(1024u, device.info().maxWorkgroupInvocations)})),
+      offsets_(Pipeline::compute(device, "raster/bin_offsets.comp")),
       writeSmall_(Pipeline::compute(device, "raster/bin_small.comp")),
       writeLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "0"}})) {
   makeQuads(scene);
@@ -132,7 +132,7 @@ RasterPush FrontEnd::addresses(const Frame& frame) const {
           .countAll = frame.instrumented};
 }
 
-void FrontEnd::record(const Frame& frame) {
+void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> alsoZeroed) {
   const RasterPush push = addresses(frame);
   auto run = [&](const Pipeline& pipeline, auto&& dispatch) {
     pipeline.bind(frame.commands, frame.bindings);
@@ -141,9 +141,11 @@ void FrontEnd::record(const Frame& frame) {
   };
   const auto compute = Stage::eComputeShader;
   frame.stage("setup", [&] {
-    fillBuffer(frame.commands, bins_, 0);
-    fillBuffer(frame.commands, counters_, 0);
-    frame.barrier(Stage::eTransfer, compute);
+    std::vector<const Buffer*> zeroed = {&bins_, &counters_};
+    zeroed.insert(zeroed.end(), alsoZeroed);
+    zeroFill_.record(frame.commands, zeroed);
+    frame.barrier(compute, compute);
+    frame.finishTarget();  // beside the setup, which leaves room on a GPU
     run(setup_, [&] {
       const std::uint32_t groups = divideUp(std::max(quadCount_, 1u), SETUP_GROUP);
       frame.commands.dispatch(std::min(groups, MAX_GROUPS), divideUp(groups, MAX_GROUPS), 1);
@@ -153,20 +155,23 @@ void FrontEnd::record(const Frame& frame) {
   frame.stage("binning", [&] {
     run(countLarge_, [&] { frame.commands.dispatch(largeGroups, 1, 1); });
     frame.barrier(compute, compute);
-    run(offsets_, [&] { frame.commands.dispatch(1, 1, 1); });
-    frame.barrier(compute, compute | Stage::eDrawIndirect | Stage::eTransfer);
+    run(offsets_, [&] { frame.commands.dispatch(divideUp(bins(), OFFSET_GROUP), 1, 1); });
+    frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(writeSmall_,
         [&] { frame.commands.dispatchIndirect(counters_.vk(), offsetof(RasterCounters, small)); });
     run(writeLarge_, [&] { frame.commands.dispatch(largeGroups, 1, 1); });
-    frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
-                              vk::BufferCopy(0, 0, sizeof(RasterCounters)));
-    frame.barrier(compute | Stage::eTransfer, compute | Stage::eHost);
+    frame.barrier(compute, compute);
   });
+}
+
+void FrontEnd::recordReadback(const Frame& frame) const {
+  frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
+                            vk::BufferCopy(0, 0, sizeof(RasterCounters)));
 }
 
 std::uint32_t FrontEnd::partCapacity() const {
   // A small quad is one entry and two triangles; each high bin rounds up.
-  return std::uint32_t(2 * std::uint64_t(entryCapacity_) / PART_TRIANGLES) + bins();
+  return 2 * (entryCapacity_ / PART_TRIANGLES + 1) + bins();
 }
 
 bool FrontEnd::grow() {

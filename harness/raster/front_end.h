@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gpu/pipeline.h"
+#include "gpu/zero_fill.h"
 #include "raster/raster_types.h"
 #include "render/frame.h"
 
@@ -29,7 +30,12 @@ class FrontEnd {
 
   /// Records the stages "setup" and "binning". After them the lists are visible to compute shaders
   /// and indirect dispatches, if `RasterCounters::ready`; else the frame is to be recorded again.
-  void record(const Frame& frame);
+  /// Zeroes `alsoZeroed` (at most two) on the way, and finishes a target that is not ready.
+  void record(const Frame& frame, std::initializer_list<const Buffer*> alsoZeroed = {});
+
+  /// Records, at the end of a frame, the copy that counted() reads: from the transfer stage, after
+  /// a barrier of the caller's and before one to the host.
+  void recordReadback(const Frame& frame) const;
 
   /// Once the device is done: makes room where room was short. True: record again.
   bool grow();
@@ -66,6 +72,7 @@ class FrontEnd {
   std::uint32_t quadCount_ = 0, degenerateQuads_ = 0;
   std::uint32_t binColumns_, binRows_;
   std::uint32_t quadCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
+  ZeroFill zeroFill_;
   Pipeline setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
   Buffer quads_, quadIds_, triangles_, irregular_, shading_, attributes_, quadBins_;
   Buffer bins_, entries_, parts_, counters_, readback_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,6 +61,14 @@ struct Frame {
   std::uint64_t constants;     ///< address of the FrameConstants
   bool instrumented;           ///< a labelled run: stages are timed, counters may cost time
   FrameTimer& timer;
+  std::function<void()> fillTarget = {};  ///< see finishTarget()
+
+  /// For methods that say so (Method::finishesTarget): fills the target with the background if that
+  /// is still to be done, by a compute shader, beside which other work may run. Behind it the
+  /// method has a barrier between compute shaders before it touches the target.
+  void finishTarget() const {
+    if (fillTarget) fillTarget();
+  }
 
   /// Brackets a stage: a row in the results. Outside instrumented frames nothing is recorded, since
   /// the barriers that part stages change what they time.

@@ -12,7 +12,7 @@ using Layout = vk::ImageLayout;
 
 /// A method that grows by what it counted is done after two recordings. More are allowed for
 /// counters that only show part of the need, but not without end.
-constexpr int maxRecordings = 8;
+constexpr int maxRecordings = 12;
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
@@ -80,16 +80,25 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
   try {
     commands_.reset();
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    const Frame frame{
+    Frame frame{
         device_,      commands_, scene_, target_, camera, bindings_.set(), constants_.address(),
         instrumented, timer_};
     timer_.begin(commands_, instrumented);
     frame.stage("opaque", [&] {
       // lavapipe (Mesa 22.3) crashes where a clear, a dispatch and a render pass follow each other.
-      if (scene_.opaqueCount() > 0 || !depthCleared_ || device_.info().isCpu())
+      if (scene_.opaqueCount() > 0 || !depthCleared_ || device_.info().isCpu()) {
         recordOpaque(frame);
-      else
-        recordBackground(frame);
+        return;
+      }
+      // Stages that are timed apart do not overlap.
+      if (method.finishesTarget() && !instrumented) {
+        frame.fillTarget = [&] { recordBackground(frame); };
+        return;
+      }
+      recordBackground(frame);
+      target_.color().transition(commands_, Layout::eGeneral, Layout::eGeneral,
+                                 Stage::eComputeShader, Access::eShaderStorageWrite,
+                                 Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
     });
     method.record(frame);
     timer_.end(commands_);
@@ -154,19 +163,16 @@ void Renderer::recordOpaque(const Frame& frame) const {
       Access::eDepthStencilAttachmentWrite, Stage::eAllCommands, Access::eMemoryRead);
 }
 
-// Where nothing is opaque the depth stays that of the first frame, infinitely far everywhere: methods
-// read it and do not write it. The colour is filled by a compute shader: clears go through the
-// rasterizer, and GPUs that have little of it take longer over them than over a method.
+// Where nothing is opaque the depth stays that of the first frame, infinitely far everywhere:
+// methods read it and do not write it. The colour is filled by a compute shader: clears go through
+// the rasterizer, and GPUs that have little of it take longer over them than over a method.
 void Renderer::recordBackground(const Frame& frame) const {
   target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,
                              Stage::eAllCommands, Access::eMemoryWrite, Stage::eComputeShader,
                              Access::eShaderStorageWrite);
   background_.bind(frame.commands, frame.bindings);
   background_.push(frame.commands, backgroundColor);
-  frame.commands.dispatch((target_.width() + 31) / 32, (target_.height() + 7) / 8, 1);
-  target_.color().transition(frame.commands, Layout::eGeneral, Layout::eGeneral,
-                             Stage::eComputeShader, Access::eShaderStorageWrite,
-                             Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
+  frame.commands.dispatch((target_.width() + 31) / 32, (target_.height() + 31) / 32, 1);
 }
 
 std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {

@@ -60,9 +60,11 @@ class Lucid : public Method {
     makeRoomForRepairs(1024);
   }
 
+  bool finishesTarget() const override { return true; }
+
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
-    frontEnd_->record(frame);
+    frontEnd_->record(frame, {&counters_, &binBlocks_});
     const raster::RasterPush front = frontEnd_->addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
@@ -73,7 +75,9 @@ class Lucid : public Method {
       frame.commands.dispatchIndirect(counters_.vk(), offset);
     };
     // The two write different half-blocks, so that no barrier parts them.
-    frame.stage("high_raster", [&] { indirect(highRaster_, offsetof(LucidCounters, high)); });
+    frame.stage("high_raster", [&] {
+      if (needed_.longLists) indirect(highRaster_, offsetof(LucidCounters, high));
+    });
     frame.stage("low_raster", [&] {
       if (ordersFirst()) {
         indirect(ordered_, offsetof(LucidCounters, ordered));
@@ -81,24 +85,28 @@ class Lucid : public Method {
       }
       indirect(lowRaster_, offsetof(LucidCounters, low));
     });
-    recordRepair(frame, front, push);
+    frame.stage("repair", [&] {
+      if (needed_.repair) recordRepair(frame, front, push);
+    });
     frame.barrier(compute, Stage::eTransfer);
+    frontEnd_->recordReadback(frame);
     frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
                               vk::BufferCopy(0, 0, sizeof(LucidCounters)));
     frame.barrier(Stage::eTransfer, Stage::eHost);
   }
 
   Status status() override {
+    const LucidCounters& c = readback_.mapped<LucidCounters>()[0];
+    bool again = findNeeded(c);
     if (frontEnd_->grow()) {
       makeRoomForParts();
       return {.recordAgain = true};
     }
-    const LucidCounters& c = readback_.mapped<LucidCounters>()[0];
-    bool again = false;
     if (c.triHalfBlocks > listCapacity_) {
       makeRoomForLists(withSlack(c.triHalfBlocks));
       return {.recordAgain = true};
     }
+    if (again && c.repairJobs == 0) return {.recordAgain = true};
     // A short subgroup goes through each list several times.
     const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
     const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
@@ -135,12 +143,28 @@ class Lucid : public Method {
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
     status.counters["scratch_bytes"] = 0;
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_})
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partLists_})
       status.counters["scratch_bytes"] += buffer->bytes();
     return status;
   }
 
  private:
+  // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
+  // a GPU some microseconds that has nothing to do.
+  struct Needed {
+    bool highBins = false, longLists = false, repair = false;
+    bool operator==(const Needed&) const = default;
+  };
+
+  // Whether the last frame lacked a pass.
+  bool findNeeded(const LucidCounters& c) {
+    const Needed before = needed_;
+    needed_.highBins = needed_.highBins || frontEnd_->counted().highParts > 0;
+    needed_.longLists = needed_.longLists || c.highLists > 0;
+    needed_.repair = needed_.repair || c.repairJobs > 0;
+    return needed_ != before;
+  }
+
   // llvmpipe ends long loops early and in silence: there the turns are counted.
   bool verifiesLoops() const { return device_->info().isCpu(); }
 
@@ -217,7 +241,7 @@ class Lucid : public Method {
                           .blocks = blocks_.address(),
                           .filterJobs = filterJobs_.address(),
                           .binBlocks = binBlocks_.address(),
-                          .partFirsts = partFirsts_.address(),
+                          .partLists = partLists_.address(),
                           .counters = counters_.address(),
                           .listCapacity = listCapacity_,
                           .near = frame.camera.near,
@@ -227,12 +251,10 @@ class Lucid : public Method {
       blocksPasses_[std::size_t(pass)].push(frame.commands, push);
       frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
     };
-    fillBuffer(frame.commands, counters_, 0);
-    fillBuffer(frame.commands, binBlocks_, 0);
-    frame.barrier(Stage::eTransfer, compute);
-    run(1, offsetof(RasterCounters, high));
+    if (needed_.highBins) run(1, offsetof(RasterCounters, high));
     run(0, offsetof(RasterCounters, low));
     frame.barrier(compute, compute | Stage::eDrawIndirect);
+    if (!needed_.highBins) return;
     run(2, offsetof(RasterCounters, high));
     frame.barrier(compute, compute);
   }
@@ -285,31 +307,29 @@ class Lucid : public Method {
       pipeline.push(frame.commands, push);
       frame.commands.dispatchIndirect(counters_.vk(), offset);
     };
-    frame.stage("repair", [&] {
-      frame.barrier(compute, compute | Stage::eDrawIndirect);
-      run(repair_, offsetof(LucidCounters, repair));
-      if (deepCapacity_ == 0) return;  // no frame has needed it yet
-      frame.barrier(compute, compute | Stage::eDrawIndirect);
-      run(deepCapture_, offsetof(LucidCounters, deep));
-      for (push.round = 0; push.round < push.rounds; ++push.round) {
-        frame.barrier(compute, compute);
-        run(deepResolve_, offsetof(LucidCounters, deepResolve));
-      }
-    });
+    frame.barrier(compute, compute | Stage::eDrawIndirect);
+    run(repair_, offsetof(LucidCounters, repair));
+    if (deepCapacity_ == 0) return;  // no frame has needed it yet
+    frame.barrier(compute, compute | Stage::eDrawIndirect);
+    run(deepCapture_, offsetof(LucidCounters, deep));
+    for (push.round = 0; push.round < push.rounds; ++push.round) {
+      frame.barrier(compute, compute);
+      run(deepResolve_, offsetof(LucidCounters, deepResolve));
+    }
   }
 
   void makeRoomForParts() {
-    partFirsts_ = Buffer();
-    partFirsts_ = Buffer(*device_, memory_, "places of parts",
-                         std::uint64_t(frontEnd_->partCapacity()) * HALF_BLOCKS * 4);
+    partLists_ = Buffer();
+    partLists_ = Buffer(*device_, memory_, "lists of parts",
+                        std::uint64_t(frontEnd_->partCapacity()) * sizeof(PartLists));
   }
 
   void makeRoomForLists(std::uint64_t entries) {
-    if (entries > ~0u)
+    if (entries > ~0u / 2)
       fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
     list_ = Buffer();  // give the old ones back first: both may not fit
     keys_ = Buffer();
-    list_ = Buffer(*device_, memory_, "tri-half-blocks", entries * sizeof(TriHalfBlock));
+    list_ = Buffer(*device_, memory_, "tri-half-blocks", 2 * entries * sizeof(TriHalfBlock));
     keys_ = Buffer(*device_, memory_, "depth keys", entries * sizeof(std::uint32_t));
     listCapacity_ = std::uint32_t(entries);
   }
@@ -335,7 +355,7 @@ class Lucid : public Method {
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partFirsts_,
+    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partLists_,
                                  &repairs_, &counters_, &deepPixels_, &nodes_})
       if (*buffer) fillBuffer(frame.commands, *buffer, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
@@ -347,10 +367,11 @@ class Lucid : public Method {
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
   std::uint32_t deepRounds_ = 1;
+  Needed needed_;
   std::array<Pipeline, 3> blocksPasses_;
   Pipeline ordered_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
-  Buffer list_, keys_, blocks_, filterJobs_, binBlocks_, partFirsts_, repairs_, counters_,
-      readback_, deepPixels_, nodes_;
+  Buffer list_, keys_, blocks_, filterJobs_, binBlocks_, partLists_, repairs_, counters_, readback_,
+      deepPixels_, nodes_;
 };
 
 const RegisterMethod registered({

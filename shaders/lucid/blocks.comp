@@ -7,11 +7,13 @@
 // FIRST_LIST: ORDERED_LIST, or 0 where all lists go through the depth filter.
 //
 // PASS 0: bins of one part: counts and writes. PASS 1: counts bins of several parts, the last of which
-// makes room for all. PASS 2: writes these.
+// makes room for all. PASS 2: writes these, from what PASS 1 kept.
 #include "lucid/lucid_types.h"
 #include "lucid/sort_key.glsl"
 #include "raster/coverage.glsl"
 #include "raster/records.glsl"
+
+#extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
@@ -24,14 +26,23 @@ shared uint keptPlaces[KEPT];  // half-block, triangle of the part, place in the
 #define TRIANGLE_SHIFT 5  // above the half-block: PART_TRIANGLES
 #define PLACE_SHIFT 13
 
+// The part's triangles, in the order of the group's subgroups: their slots, and the strips that they
+// reach, before each of them and which is the first.
+#define RUN ((PART_TRIANGLES + GROUP - 1u) / GROUP)  // triangles of an invocation
+shared uint slots[PART_TRIANGLES], begins[PART_TRIANGLES];
+#define FIRST_STRIP_BITS 3
+shared uint stripSums[GROUP];  // of a subgroup each
+shared uint strips;
+
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
-shared uint kept, base, total;
+shared uint kept, keptFirst, base, total;
 shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh;
 shared uint last;
 
 struct Span {
   Bin bin;
   ivec2 region;      // the bin's first pixel
+  ivec2 extent;      // pixels of it that are on the screen
   uint first, count; // triangles of the bin's list
 };
 
@@ -51,9 +62,55 @@ void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
       sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
 }
 
+// First strip that the triangle reaches in the bin, and how many.
+uvec2 stripsOf(Span span, uint slot) {
+  const RasterTriangle t = loadTriangle(push.triangles, slot);
+  if (t.flags == 0u) return uvec2(0u);
+  ivec4 box = ivec4(ivec2(0), span.extent - 1);
+  if ((t.flags & TRIANGLE_IRREGULAR) == 0u) {
+    const ivec4 own = snappedBox(t.v01.xy, t.v01.zw, t.v2) - span.region.xyxy;
+    box = ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
+  }
+  if (isEmpty(box)) return uvec2(0u);
+  return uvec2(uint(box.y) / HALF_BLOCK_HEIGHT, uint(box.w) / HALF_BLOCK_HEIGHT - uint(box.y) / HALF_BLOCK_HEIGHT + 1u);
+}
+
+// Fills `slots` and, if there is to be a walk, `begins` and `strips`. All invocations take part.
+void findStrips(Span span, bool walks) {
+  const uint self = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
+  uvec2 reached[RUN];
+  uint own = 0u;
+  [[unroll]] for (uint r = 0u; r < RUN; ++r) {
+    const uint number = self * RUN + r;
+    reached[r] = uvec2(0u);
+    if (number < span.count) {
+      const uint slot = slotOf(span.bin, span.first + number);
+      slots[number] = slot;
+      if (walks) reached[r] = stripsOf(span, slot);
+    }
+    own += reached[r].y;
+  }
+  const uint sum = subgroupAdd(own);
+  uint before = subgroupExclusiveAdd(own);
+  if (subgroupElect()) stripSums[gl_SubgroupID] = sum;
+  barrier();
+  for (uint s = 0u; s < gl_SubgroupID; ++s) before += stripSums[s];
+  [[unroll]] for (uint r = 0u; r < RUN; ++r) {
+    const uint number = self * RUN + r;
+    if (number < PART_TRIANGLES) begins[number] = before << FIRST_STRIP_BITS | reached[r].x;
+    before += reached[r].y;
+  }
+  if (gl_SubgroupID == gl_NumSubgroups - 1u && subgroupElect()) {
+    uint all = 0u;
+    for (uint s = 0u; s < gl_NumSubgroups; ++s) all += stripSums[s];
+    strips = all;
+  }
+  barrier();
+}
+
 // `number`: of the triangle in its part.
 void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 masks) {
-#if PASS != 1
+#if PASS != 2
   uint k = 0u;
   if (!write) k = atomicAdd(kept, uint(dot(vec4(notEqual(masks, uvec4(0u))), vec4(1.0))));
 #endif
@@ -64,8 +121,8 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
       writeItem(span.region, slot, masks[c], block, atomicAdd(cursors[block], 1u));
       continue;
     }
+#if PASS != 2
     const uint place = atomicAdd(counts[block], 1u);
-#if PASS != 1
     if (k < KEPT) {
       keptMasks[k] = masks[c];
       keptPlaces[k] = block | number << TRIANGLE_SHIFT | place << PLACE_SHIFT;
@@ -75,70 +132,47 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
   }
 }
 
-// A row's part of the masks of its strip's half-blocks.
-uvec4 masksOfRow(uint covered, int row) {
-  return (uvec4(covered, covered >> 8, covered >> 16, covered >> 24) & 0xffu) << (8 * (row & 3));
-}
-
-// Coverage of a strip's half-blocks by rows [first, last_] of the bin.
-uvec4 coverStrip(RegionEdges edges, int strip, int first, int last_, uint onScreen) {
-  uvec4 masks = uvec4(0u);
-  for (int row = max(first, 4 * strip); row <= min(last_, 4 * strip + 3); ++row) {
-    masks |= masksOfRow(onScreen & rowCoverage(edges, row), row);
-  }
-  return masks;
-}
-
-uvec4 coverIrregularStrip(uint slot, uint flags, ivec2 region, int strip, int last_, uint onScreen) {
-  uvec4 masks = uvec4(0u);
-  for (int row = 4 * strip; row <= min(last_, 4 * strip + 3); ++row) {
-    const uint covered = onScreen & irregularRow(push.triangles, push.irregular, push.shading, slot,
-                                                 flags, push.near, region, row);
-    masks |= masksOfRow(covered, row);
-  }
-  return masks;
-}
-
-// All triangles of the span, or, where there are few, all strips of all triangles.
-void walk(bool write, Span span) {
-  const bool byStrip = span.count * STRIPS <= 2u * GROUP;
-  const uint items = byStrip ? span.count * STRIPS : span.count;
-  const int rows = min(int(push.size.y) - span.region.y, 32);
-  const uint onScreen = bitsBetween(0, min(int(push.size.x) - span.region.x, 32) - 1);
-  for (uint i = gl_LocalInvocationIndex; i < items; i += GROUP) {
-    const uint number = byStrip ? i / STRIPS : i, slot = slotOf(span.bin, span.first + number);
-    const RasterTriangle t = loadTriangle(push.triangles, slot);
-    if (t.flags == 0u) continue;
-    const bool irregular = (t.flags & TRIANGLE_IRREGULAR) != 0u;
-    const ivec4 box = snappedBox(t.v01.xy, t.v01.zw, t.v2);
-    const int firstRow = irregular ? 0 : max(box.y - span.region.y, 0);
-    const int lastRow = min(irregular ? 31 : box.w - span.region.y, rows - 1);
-    if (firstRow > lastRow) continue;
-    int strip = firstRow / 4, lastStrip = lastRow / 4;
-    if (byStrip) {
-      const int mine = int(i % STRIPS);
-      if (mine < strip || mine > lastStrip) continue;
-      strip = lastStrip = mine;
-    }
-    if (irregular) {
-      for (; strip <= lastStrip; ++strip)
-        takeStrip(write, span, slot, number, strip,
-                  coverIrregularStrip(slot, t.flags, span.region, strip, lastRow, onScreen));
-      continue;
-    }
+// Coverage of a strip's half-blocks: a byte of each row is one of each mask.
+uvec4 coverStrip(RasterTriangle t, Span span, int strip, uint slot) {
+  const uint onScreen = bitsBetween(0, span.extent.x - 1);
+  uvec4 rows;
+  if ((t.flags & TRIANGLE_IRREGULAR) != 0u) {
+    [[dont_unroll]] for (int row = 0; row < 4; ++row)
+      rows[row] = irregularRow(push.triangles, push.irregular, push.shading, slot, t.flags, push.near,
+                               span.region, 4 * strip + row);
+  } else {
     const RegionEdges edges = regionEdges(t, span.region);
-    for (; strip <= lastStrip; ++strip)
-      takeStrip(write, span, slot, number, strip, coverStrip(edges, strip, firstRow, lastRow, onScreen));
+    [[unroll]] for (int row = 0; row < 4; ++row) rows[row] = rowCoverage(edges, 4 * strip + row);
+  }
+  uvec4 masks = uvec4(0u);
+  [[unroll]] for (int row = 0; row < 4; ++row) {
+    const uint covered = 4 * strip + row < span.extent.y ? rows[row] & onScreen : 0u;
+    masks |= ((uvec4(covered) >> uvec4(0u, 8u, 16u, 24u)) & 0xffu) << (8 * row);
+  }
+  return masks;
+}
+
+// Which of the part's triangles has the strip: the last that begins no later.
+uint triangleOf(uint item) {
+  uint number = 0u;
+  [[unroll]] for (uint step = PART_TRIANGLES / 2u; step > 0u; step /= 2u)
+    if (begins[number + step] >> FIRST_STRIP_BITS <= item) number += step;
+  return number;
+}
+
+// Strips are shared out evenly, however tall the triangles: lanes of a subgroup wait for each other.
+void walk(bool write, Span span) {
+  for (uint i = gl_LocalInvocationIndex; i < strips; i += GROUP) {
+    const uint number = triangleOf(i), slot = slots[number], begin = begins[number];
+    const int strip = int(bitfieldExtract(begin, 0, FIRST_STRIP_BITS) + i - (begin >> FIRST_STRIP_BITS));
+    const RasterTriangle t = loadTriangle(push.triangles, slot);
+    takeStrip(write, span, slot, number, strip, coverStrip(t, span, strip, slot));
   }
 }
 
-void writeKept(Span span) {
-  for (uint k = gl_LocalInvocationIndex; k < kept; k += GROUP) {
-    const uint place = keptPlaces[k];
-    const uint number = bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT);
-    writeItem(span.region, slotOf(span.bin, span.first + number), keptMasks[k],
-              place & (HALF_BLOCKS - 1u), place >> PLACE_SHIFT);
-  }
+void writeKeptItem(Span span, uint mask, uint place) {
+  const uint number = bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT);
+  writeItem(span.region, slots[number], mask, place & (HALF_BLOCKS - 1u), place >> PLACE_SHIFT);
 }
 
 uint halfBlocksOfFrame() {
@@ -189,23 +223,45 @@ void goThrough(Part part, uint place) {
   Span span;
   span.bin = push.bins.at[part.bin];
   span.region = ivec2(uvec2(part.bin % grid.x, part.bin / grid.x) * BIN_SIZE);
+  span.extent = min(ivec2(push.size) - span.region, ivec2(BIN_SIZE));
   span.first = part.number * PART_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
   span.count = min(2u * span.bin.quads + span.bin.triangles - span.first, PART_TRIANGLES);
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
   if (self == 0u) kept = 0u;
-  barrier();
-  const uint own = part.bin * HALF_BLOCKS + self, ownInPart = place * HALF_BLOCKS + self;
-#if PASS == 1
+#if PASS == 2
+  const uint keptThere = push.partLists.at[place].kept, keptAt = push.partLists.at[place].keptFirst;
+  const bool again = keptThere > KEPT;
+#else
+  const bool again = true;
+#endif
+  findStrips(span, again);
+  const uint own = part.bin * HALF_BLOCKS + self;
+#if PASS != 2
   walk(false, span);
   barrier();
+#endif
+#if PASS == 0
+  if (self < HALF_BLOCKS) lengths[self] = counts[self];
+  makeLists(part.bin);
+  if (base + total > push.listCapacity) return;  // counted all the same: the host makes room
+  if (kept > KEPT) {
+    walk(true, span);
+  } else {
+    for (uint k = self; k < kept; k += GROUP) writeKeptItem(span, keptMasks[k], keptPlaces[k]);
+  }
+#elif PASS == 1
   if (self < HALF_BLOCKS)
-    push.partFirsts.at[ownInPart] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
+    push.partLists.at[place].first[self] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
   memoryBarrierBuffer();
   barrier();
   memoryBarrierBuffer();  // of what the others released, by the one invocation that says so
   const uint parts = (2u * span.bin.quads + span.bin.triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
-  if (self == 0u)
+  if (self == 0u) {
     last = uint(atomicAdd(push.binBlocks.at[part.bin * HALF_BLOCKS].partsDone, 1u) + 1u == parts);
+    keptFirst = kept > KEPT ? 0u : atomicAdd(push.counters.c.kept, kept);
+    push.partLists.at[place].kept = kept;
+    push.partLists.at[place].keptFirst = keptFirst;
+  }
   memoryBarrierBuffer();
   barrier();
   memoryBarrierBuffer();
@@ -214,23 +270,20 @@ void goThrough(Part part, uint place) {
     lengths[self] = last != 0u ? atomicAdd(push.binBlocks.at[own].count, 0u) : 0u;
   makeLists(part.bin);
   if (last != 0u && self < HALF_BLOCKS) push.binBlocks.at[own].first = starts[self];
+  if (kept <= KEPT && keptFirst + kept <= push.listCapacity)
+    for (uint k = self; k < kept; k += GROUP)
+      push.list.at[push.listCapacity + keptFirst + k] = uvec2(keptMasks[k], keptPlaces[k]);
 #else
-  // Counts, then writes what was kept, or what it rasterizes again: one loop, so that the code for both
-  // is there once.
-  for (uint phase = 0u; phase < 2u; ++phase) {
-    if (phase == 0u || kept > KEPT) walk(phase == 1u, span);
-    else writeKept(span);
-    barrier();
-    if (phase == 1u) break;
-#if PASS == 0
-    if (self < HALF_BLOCKS) lengths[self] = counts[self];
-    makeLists(part.bin);
-    if (base + total > push.listCapacity) break;  // counted all the same: the host makes room
-#else
-    if (self < HALF_BLOCKS)
-      starts[self] = push.binBlocks.at[own].first + push.partFirsts.at[ownInPart];
-    barrier();
-#endif
+  if (self < HALF_BLOCKS)
+    starts[self] = push.binBlocks.at[own].first + push.partLists.at[place].first[self];
+  barrier();
+  if (again) {
+    walk(true, span);
+  } else {
+    for (uint k = self; k < keptThere; k += GROUP) {
+      const uvec2 item = push.list.at[push.listCapacity + keptAt + k];
+      writeKeptItem(span, item.x, item.y);
+    }
   }
 #endif
 }

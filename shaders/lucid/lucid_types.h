@@ -17,7 +17,6 @@ using namespace oitlab::raster;
 #define HALF_BLOCK_HEIGHT 4u
 #define HALF_BLOCKS_ACROSS 4u
 #define HALF_BLOCKS 32u  // of a bin
-#define STRIPS 8u        // rows of half-blocks in a bin
 
 // Tri-half-blocks that the programs of blend.comp sort in shared memory (section 2, phase 2).
 #define ORDERED_LIST 64u  // without the depth filter
@@ -49,6 +48,12 @@ struct BinBlock {
   uint partsDone;      // of the bin; in its first half-block
 };
 
+// Of each part of a high bin, from counting to writing.
+struct PartLists {
+  uint first[HALF_BLOCKS];  // places of its tri-half-blocks in the half-blocks' lists
+  uint kept, keptFirst;     // what it kept, and where, behind the lists; none where it was too much
+};
+
 // Pixels of a half-block to be blended again, by the depth filter or in exact order.
 struct PixelJob {
   HalfBlock block;
@@ -71,6 +76,7 @@ struct DeepPixel {
 struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
   uint orderedLists, highLists;  // half-blocks of at most ORDERED_LIST, and of more than LOW_LIST
+  uint kept;                   // by parts of high bins, all together: at most triHalfBlocks
   uint groupsDone;             // workgroups of blocks.comp
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
@@ -94,6 +100,7 @@ struct LucidCounters {
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBlockBuffer { BinBlock at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PartListsBuffer { PartLists at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PixelJobBuffer { PixelJob at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LucidCounterBuffer { LucidCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuffer { DeepPixel at[]; };
@@ -107,12 +114,12 @@ struct BlocksPush {
   ADDRESS_OF(WordBuffer) entries;
   ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;
-  ADDRESS_OF(TriHalfBlockBuffer) list;
+  ADDRESS_OF(TriHalfBlockBuffer) list;  // of listCapacity; behind it as many places for what is kept
   ADDRESS_OF(WordBuffer) keys;         // parallel to list: depth to sort by
   ADDRESS_OF(HalfBlockBuffer) blocks;  // ordered ones from 0 up, high ones from the end down
   ADDRESS_OF(PixelJobBuffer) filterJobs;
   ADDRESS_OF(BinBlockBuffer) binBlocks;
-  ADDRESS_OF(WordBuffer) partFirsts;  // of each part of a high bin: places in the half-blocks' lists
+  ADDRESS_OF(PartListsBuffer) partLists;  // of each part of a high bin
   ADDRESS_OF(LucidCounterBuffer) counters;
   uint listCapacity;
   float near;       // distance of the near plane

@@ -18,6 +18,7 @@ using uvec4 = glm::uvec4;
 #define SUBPIXEL_BITS 8          // of snapped vertices: 1/256 pixel, as in hardware
 #define GUARD_BAND (1 << 22)     // snapped coordinates lie within: edge functions fit into 64 bits
 #define SETUP_GROUP 256u         // quads of one workgroup of setup
+#define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
 #define LARGE_GROUP 64u          // invocations that share one large triangle in binning
 #define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
@@ -106,6 +107,7 @@ struct RasterCounters {
   uint entries;                 // of all bins' lists
   uint emptyBins, lowBins, highBins;
   uint highParts;               // of all high bins
+  uint offsetGroupsDone;        // workgroups of bin_offsets.comp
   uint ready;                   // 1: nothing overflowed, the lists are complete
   Dispatch small;               // workgroups that write the lists of small quads
   Dispatch low, high;           // one workgroup a low bin, one a part of a high bin
