@@ -100,6 +100,13 @@ DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical) {
   FeatureChain chain = queryFeatures(physical);
   for (const NamedFeature& feature : namedFeatures(chain))
     info.features[feature.name] = *feature.value == VK_TRUE;
+  using Subgroup = vk::SubgroupFeatureFlagBits;
+  const vk::SubgroupFeatureFlags wanted = Subgroup::eBasic | Subgroup::eVote |
+                                          Subgroup::eArithmetic | Subgroup::eBallot |
+                                          Subgroup::eShuffle;
+  info.features["subgroupOperations"] =
+      (v11.subgroupSupportedOperations & wanted) == wanted &&
+      bool(v11.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute);
   return info;
 }
 

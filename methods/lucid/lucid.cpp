@@ -395,7 +395,7 @@ const RegisterMethod registered({
          flag("backface_culling", false,
               "drop quads that face away, which no other method does: for the scene table"),
          flag("poison", false, "fill all buffers with rubbish before each frame: a test")},
-    .features = {"subgroupSizeControl", "computeFullSubgroups"},
+    .features = {"subgroupSizeControl", "computeFullSubgroups", "subgroupOperations"},
     .make = [] { return std::make_unique<Lucid>(); },
 });
 

@@ -2,20 +2,29 @@
 // Stage 2, phase 3 for small quads: writes each to the lists of the bins that its box overlaps. Up to
 // 3 of 4 may be overlapped by the box alone; rasterization finds these empty.
 #include "raster/raster_types.h"
+#include "raster/together.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
 
 void main() {
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
-  const uint stride = push.counters.c.small.x * SETUP_GROUP;
-  for (uint quad = gl_GlobalInvocationID.x; quad < push.counters.c.smallQuads; quad += stride) {
-    const BinBox box = push.quadBins.at[quad];
-    for (uint y = box.first >> 16; y <= box.last >> 16; ++y)
-      for (uint x = box.first & 0xffffu; x <= (box.last & 0xffffu); ++x) {
-        const uint bin = y * columns + x;
-        const uint cursor = atomicAdd(push.bins.at[bin].quadCursor, 1u);
-        push.entries.at[push.bins.at[bin].quadOffset + cursor] = quad;
-      }
+  const uint quads = push.counters.c.smallQuads, stride = push.counters.c.small.x * SETUP_GROUP;
+  for (uint quad = gl_GlobalInvocationID.x; subgroupAny(quad < quads); quad += stride) {
+    BinBox box = BinBox(0u, 0u);
+    if (quad < quads) box = push.quadBins.at[quad];
+    const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);
+    const uvec2 extent = uvec2(box.last & 0xffffu, box.last >> 16) - first + 1u;
+    for (uint k = 0u; k < SMALL_QUAD_BINS; ++k) {
+      const bool valid = quad < quads && k < extent.x * extent.y;
+      if (!subgroupAny(valid)) break;
+      const uint bin = (first.y + k / extent.x) * columns + first.x + k % extent.x;
+      const Together t = gather(bin, valid);
+      uint place = 0u;
+      if (t.count > 0u)
+        place = push.bins.at[bin].quadOffset + atomicAdd(push.bins.at[bin].quadCursor, t.count);
+      place = subgroupShuffle(place, t.leader) + t.rank;
+      if (valid) push.entries.at[place] = quad;
+    }
   }
 }

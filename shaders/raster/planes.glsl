@@ -22,11 +22,11 @@ void swapCorners(inout Corner a, inout Corner b, inout uint ia, inout uint ib) {
 }
 
 // Gradient of a function that is 0 at the first corner, f1 and f2 at the others; d1 and d2 lead to
-// these.
-vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float area) {
+// these. One division for all gradients of a triangle.
+vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float overArea) {
   precise vec2 g;
-  g.x = (f1 * d2.y - f2 * d1.y) / area;
-  g.y = (f2 * d1.x - f1 * d2.x) / area;
+  g.x = (f1 * d2.y - f2 * d1.y) * overArea;
+  g.y = (f2 * d1.x - f1 * d2.x) * overArea;
   return g;
 }
 
@@ -45,11 +45,12 @@ ShadeTriangle regularPlanes(Corner a, Corner b, Corner c, inout uvec3 corners) {
   t.invW = a.invW;
   // Thinner than rounding: the nearest corner's attributes throughout.
   const bool flat_ = area == 0.0;
+  precise const float overArea = 1.0 / area;
   precise const float rise1 = b.invW - a.invW;
   precise const float rise2 = c.invW - a.invW;
-  t.invWSlope = flat_ ? vec2(0.0) : gradient(d1, d2, rise1, rise2, area);
-  t.b1Slope = flat_ ? vec2(0.0) : gradient(d1, d2, b.invW, 0.0, area);
-  t.b2Slope = flat_ ? vec2(0.0) : gradient(d1, d2, 0.0, c.invW, area);
+  t.invWSlope = flat_ ? vec2(0.0) : gradient(d1, d2, rise1, rise2, overArea);
+  t.b1Slope = flat_ ? vec2(0.0) : gradient(d1, d2, b.invW, 0.0, overArea);
+  t.b2Slope = flat_ ? vec2(0.0) : gradient(d1, d2, 0.0, c.invW, overArea);
   return t;
 }
 

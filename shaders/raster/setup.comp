@@ -6,6 +6,7 @@
 // visible quads are written to are compact.
 #include "raster/planes.glsl"
 #include "raster/records.glsl"
+#include "raster/together.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
@@ -91,7 +92,7 @@ void main() {
   Corner corner[4];
   ivec4 box[2] = ivec4[2](emptyBox, emptyBox);
   BinBox bins;
-  uvec2 firstBin, lastBin;
+  uvec2 firstBin = uvec2(0u), lastBin = uvec2(0u);
   Quad quadShading;
   PackedVertexBuffer vertices = PackedVertexBuffer(push.frame.c.vertices);
   if (quad < push.quadCount) {
@@ -137,14 +138,17 @@ void main() {
     if (groupBackFacing > 0u) atomicAdd(push.counters.c.culledBackFacing, groupBackFacing);
   }
   barrier();
+  const uvec2 extent = small ? lastBin - firstBin + 1u : uvec2(0u, 1u);
+  const uint columns = (size.x + BIN_SIZE - 1u) / BIN_SIZE;
+  for (uint k = 0u; k < SMALL_QUAD_BINS; ++k) {
+    const bool valid = k < extent.x * extent.y;
+    if (!subgroupAny(valid)) break;
+    const uint bin = (firstBin.y + k / max(extent.x, 1u)) * columns + firstBin.x + k % max(extent.x, 1u);
+    const Together t = gather(bin, valid);
+    if (t.count > 0u) atomicAdd(push.bins.at[bin].quads, t.count);
+  }
   if (!visible) return;
 
-  if (small) {
-    const uint columns = (size.x + BIN_SIZE - 1u) / BIN_SIZE;
-    for (uint y = firstBin.y; y <= lastBin.y; ++y)
-      for (uint x = firstBin.x; x <= lastBin.x; ++x)
-        atomicAdd(push.bins.at[y * columns + x].quads, 1u);
-  }
   const uint place = rank + (small ? firstSmall : firstLarge);
   if (place >= push.quadCapacity) return;  // counted all the same: the host makes room
   const uint slot = small ? place : push.quadCapacity - 1u - place;
