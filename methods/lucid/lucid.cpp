@@ -32,6 +32,14 @@ bool hasGradients(const Scene& scene) {
   });
 }
 
+/// Whether the corners of a triangle differ in normal.
+bool isSmooth(const Scene& scene) {
+  const auto& v = scene.vertices;
+  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const auto& t) {
+    return v[t.x].normal != v[t.y].normal || v[t.x].normal != v[t.z].normal;
+  });
+}
+
 }  // namespace
 
 class Lucid : public Method {
@@ -43,6 +51,7 @@ class Lucid : public Method {
     textures_ = !scene.scene().textures.empty();
     colors_ = hasColors(scene.scene());
     gradients_ = colors_ && hasGradients(scene.scene());
+    smooth_ = isSmooth(scene.scene());
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
@@ -193,10 +202,13 @@ class Lucid : public Method {
         {"HAS_TEXTURES", textures_ ? "1" : "0"},
         {"HAS_GRADIENTS", gradients_ ? "1" : "0"},
         {"HAS_ATTRIBUTES", textures_ || colors_ ? "1" : "0"},
+        {"HAS_SMOOTH", smooth_ ? "1" : "0"},
+        {"HAS_THRESHOLD", parameters_.real("alpha_threshold") > 0.0 ? "1" : "0"},
         {"UNIFORM_CONTROL_FLOW", device_->hasSubgroupUniformControlFlow() ? "1" : "0"},
         {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
     auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
       Defines defines = common;
+      defines["ORDERED"] = list == std::string("ORDERED_LIST") ? "1" : "0";
       defines["HIGH"] = list == std::string("HIGH_LIST") ? "1" : "0";
       defines["TEAMS"] = teams;
       defines["LIST"] = list;
@@ -213,7 +225,7 @@ class Lucid : public Method {
                              {"GROUP", group},
                              {"FIRST_LIST", ordersFirst() ? "ORDERED_LIST" : "0u"}});
     const std::int64_t filter = parameters_.integer("depth_filter");
-    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", lowTeams(), 0);
+    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", lowTeams(), 1);
     lowRaster_ = raster("LOW_LIST", lowTeams(), filter);
     highRaster_ = raster("HIGH_LIST", "1u", filter);
     repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
@@ -222,7 +234,8 @@ class Lucid : public Method {
                                       {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
                                       {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
                                       {"HAS_GRADIENTS", common.at("HAS_GRADIENTS")},
-                                      {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")}});
+                                      {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")},
+                                      {"HAS_SMOOTH", common.at("HAS_SMOOTH")}});
     deepResolve_ =
         Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
   }
@@ -362,7 +375,7 @@ class Lucid : public Method {
   }
 
   const Device* device_ = nullptr;
-  bool opaque_ = false, textures_ = false, colors_ = false, gradients_ = false;
+  bool opaque_ = false, textures_ = false, colors_ = false, gradients_ = false, smooth_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;

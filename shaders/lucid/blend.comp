@@ -1,8 +1,8 @@
 #version 460
 // Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Three
 // programs:
-//   ordered  DEPTH_FILTER 0, LIST = ORDERED_LIST: most pixels' fragments come in the order of the sorted
-//            triangles; pixels in which one does not are passed on,
+//   ordered  ORDERED, LIST = ORDERED_LIST: most pixels' fragments come nearly in the order of the sorted
+//            triangles, so that a depth filter of 1 will do; pixels in which it does not are passed on,
 //   low      LIST = LOW_LIST: these pixels, and half-blocks of longer lists, with the depth filter,
 //   high     LIST = HIGH_LIST: half-blocks of yet longer lists, with the depth filter.
 //
@@ -51,6 +51,32 @@ void passOn(HalfBlock block, uint pixels) {
   if (job % TEAMS == 0u && job < MAX_GROUPS * TEAMS) atomicAdd(push.counters.c.low.x, 1u);
 }
 
+// The fragment of a prepared triangle at a pixel that it covers or, for nothing, at another.
+struct Taken {
+  Fragment f;
+  bool kept;   // it is there to be pushed
+  bool blends; // and not behind the alpha threshold
+};
+
+Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
+  const Prepared t = loadPrepared(at);
+  Taken taken;
+  taken.f.invW = invWOf(t, pixel);
+  taken.f.id = idOf(t);
+  taken.f.color = vec4(0.0);
+  taken.kept = covered && !isHidden(taken.f.invW, opaque);
+  taken.blends = taken.kept && !full;
+#if HAS_TEXTURES  // not for nothing
+  if (taken.blends)
+#endif
+  {
+    const bool there = shadePrepared(t, pixel, taken.f.invW, taken.f.color);
+    taken.kept = taken.kept && (full || there);
+    taken.blends = taken.blends && there;
+  }
+  return taken;
+}
+
 // Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
 // pixels whose order went wrong.
 uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) {
@@ -74,7 +100,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
     covered |= item.mask;
     Batch b = makeBatch(item.triangle, item.mask);
     turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
-    const uint full = push.alphaThreshold > 0.0 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
+    const uint full = HAS_THRESHOLD == 1 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
 
     // Where triangles cover a good part of the pixels, each lane shades its own; where they are small,
     // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
@@ -85,19 +111,19 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
         if (item.mask != 0u && mine < PREPARED_COUNT)
           storePrepared(team * PREPARED_COUNT + mine, prepare(item.triangle, corner));
         teamBarrier();
-        const uint here = min(b.size - part, PREPARED_COUNT);
-        for (uint k = 0u; k < here; ++k) {
-          ++turns;
-          if (owner && (batch[b.at + part + k].y & (1u << bit)) != 0u) {
-            const Prepared t = loadPrepared(team * PREPARED_COUNT + k);
-            Fragment f;
-            f.invW = invWOf(t, pixel);
-            f.id = idOf(t);
-            const bool visible = !isHidden(f.invW, opaque), full = isFull(p);
-            const bool kept = visible && (full || shadePrepared(t, pixel, f.invW, f.color));
-            if (kept) pushFragment(p, f);
-            samples += uint(kept && !full);
-          }
+        const uint here = min(b.size - part, PREPARED_COUNT), at = b.at + part;
+        turns += here;
+        // In pairs, and without branches: what the one waits for, the other has time for.
+        for (uint k = 0u; k < here; k += 2u) {
+          const uint next = min(k + 1u, here - 1u);
+          const bool covers0 = owner && (batch[at + k].y & (1u << bit)) != 0u;
+          const bool covers1 = owner && (batch[at + next].y & (1u << bit)) != 0u && next > k;
+          const bool full = isFull(p);
+          const Taken t0 = take(team * PREPARED_COUNT + k, covers0, pixel, opaque, full);
+          const Taken t1 = take(team * PREPARED_COUNT + next, covers1, pixel, opaque, full);
+          if (t0.kept) pushFragment(p, t0.f);
+          if (t1.kept) pushFragment(p, t1.f);
+          samples += uint(t0.blends) + uint(t1.blends);
         }
         teamBarrier();
       }
@@ -136,7 +162,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
   drainPixel(p);
   covered = subgroupOr(covered);
   const bool touched = owner && (covered & (1u << bit)) != 0u;
-#if DEPTH_FILTER == 0
+#if ORDERED
   if (p.invalid) samples = 0u;
 #endif
   const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
@@ -147,7 +173,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
 #endif
   }
   if (touched) {
-#if DEPTH_FILTER == 0
+#if ORDERED
     const bool composes = !p.invalid;
 #else
     const bool composes = !p.invalid || (push.flags & (REPAIR | SHOW_ERRORS)) == 0u;
@@ -188,7 +214,7 @@ void blendHalfBlock(HalfBlock block, uint pixels) {
   }
   invalid = subgroupOr(invalid);
   if (lane == 0u && invalid != 0u) {
-#if DEPTH_FILTER == 0
+#if ORDERED
     passOn(block, invalid);
 #else
     atomicAdd(push.counters.c.invalidPixels, bitCount(invalid));
@@ -216,7 +242,7 @@ void handOver(HalfBlock block) {
 TEAM_MAIN void main() {
 #if HIGH
   const uint inRow = push.counters.c.high.x;
-#elif DEPTH_FILTER == 0
+#elif ORDERED
   const uint inRow = push.counters.c.ordered.x;
 #else
   const uint inRow = push.counters.c.low.x;
@@ -231,7 +257,7 @@ TEAM_MAIN void main() {
     else blendHalfBlock(block, 0xffffffffu);
     teamBarrier();
   }
-#elif DEPTH_FILTER == 0
+#elif ORDERED
   // One turn a workgroup: which is next is left to the device, where the paper has persistent threads.
   if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);

@@ -1,6 +1,6 @@
 // Sample blending (section 2): a pixel's fragments pass through a queue of DEPTH_FILTER places, which
-// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back. With
-// DEPTH_FILTER 0 there is no queue.
+// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back.
+// HAS_THRESHOLD: push.alphaThreshold counts.
 #ifndef OITLAB_LUCID_DEPTH_FILTER_GLSL
 #define OITLAB_LUCID_DEPTH_FILTER_GLSL
 
@@ -12,9 +12,7 @@ struct Pixel {
   float lastInvW;    // of the fragment blended last
   uint lastId;
   bool invalid;      // one came after one that it is in front of
-#if DEPTH_FILTER > 0
   Fragment queue[DEPTH_FILTER];  // front to back
-#endif
 };
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
@@ -27,12 +25,10 @@ void clearPixel(out Pixel p) {
   p.lastInvW = NEAREST;
   p.lastId = 0u;
   p.invalid = false;
-#if DEPTH_FILTER > 0
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
-#endif
 }
 
-bool isFull(Pixel p) { return push.alphaThreshold > 0.0 && p.accumulated.a >= push.alphaThreshold; }
+bool isFull(Pixel p) { return HAS_THRESHOLD == 1 && p.accumulated.a >= push.alphaThreshold; }
 
 // Order is right if and only if it never decreases: no wrong pixel goes unnoticed. Fragments behind
 // the alpha threshold are not blended, but their order is still watched.
@@ -48,9 +44,6 @@ void blendFragment(inout Pixel p, Fragment f) {
 // Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments
 // need no colour.
 void pushFragment(inout Pixel p, Fragment f) {
-#if DEPTH_FILTER == 0
-  blendFragment(p, f);
-#else
   if (isFull(p)) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   } else {
@@ -70,13 +63,10 @@ void pushFragment(inout Pixel p, Fragment f) {
     p.queue[DEPTH_FILTER - 1] = carried;
     blendFragment(p, leaving);
   }
-#endif
 }
 
 void drainPixel(inout Pixel p) {
-#if DEPTH_FILTER > 0
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) blendFragment(p, p.queue[i]);
-#endif
 }
 
 #endif

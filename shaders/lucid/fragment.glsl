@@ -1,8 +1,8 @@
 // Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
 // one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS
-// (some triangle's corners differ in colour) and HAS_ATTRIBUTES (textures or colours). What a scene has
-// not is not in the program: on GPUs it would take registers, and llvmpipe goes through the code of
-// branches that no lane takes.
+// (some triangle's corners differ in colour), HAS_ATTRIBUTES (textures or colours) and HAS_SMOOTH (some
+// triangle's corners differ in normal). What a scene has not is not in the program: on GPUs it would
+// take registers, and llvmpipe goes through the code of branches that no lane takes.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 
@@ -11,13 +11,16 @@
 #include "lucid/lucid_types.h"
 #include "raster/records.glsl"
 
+// Whether anything is interpolated.
+#define INTERPOLATES (HAS_SMOOTH == 1 || HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
+
 // What a triangle's fragments need, with the half-block's first sample as the origin.
 struct Prepared {
   vec4 w;      // 1 / w: at the origin, per pixel right, per pixel down; PREPARED_* bits
   vec4 n0;     // normal of the corner that weighs 1 - b1 - b2; alpha cutoff
   vec4 color;  // of the material, times the vertex colour where the corners share one
   vec4 range;  // least and most 1 / w; primitive id
-  // Not of flat triangles:
+  // Where the scene interpolates:
   vec4 b1, b2;   // the weights over w: at the origin, per pixel right, per pixel down
   vec3 n1, n2;   // normals of the other corners less that of the first
   // Of textured and coloured ones:
@@ -75,8 +78,7 @@ float opaqueDepthAt(ivec2 place) {
 #define PREPARED_ATLAS 3u
 #define PREPARED_IGNORE_ALPHA 4u
 #define PREPARED_COLORED 8u  // the corners' colours differ; n2.w is that of the first
-#define PREPARED_FLAT 16u  // one normal, no texture, one colour: nothing to interpolate
-#define PREPARED_MATERIAL_SHIFT 5
+#define PREPARED_MATERIAL_SHIFT 4
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 vec2 pick(vec4 a, vec4 b, uint i) { return i == 0u ? a.xy : i == 1u ? a.zw : i == 2u ? b.xy : b.zw; }
@@ -120,9 +122,6 @@ Prepared prepare(uint slot, ivec2 corner) {
     }
   }
 #endif
-  if (s.normals[0] == s.normals[1] && s.normals[0] == s.normals[2] &&
-      (bits & (PREPARED_ATLAS | PREPARED_COLORED)) == 0u)
-    bits |= PREPARED_FLAT;
   p.w = vec4(originInvW(s, corner), s.invWSlope, uintBitsToFloat(bits));
   p.n0 = vec4(n0, material.alphaCutoff);
   p.range = vec4(bounds, uintBitsToFloat(s.id), 0.0);
@@ -148,32 +147,32 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   Surface s;
   s.normal = p.n0.xyz;
   s.color = vec4(1.0);  // a part of `baseColor`
-  if ((bits & PREPARED_FLAT) == 0u) {
-    precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
-    precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
-    precise const float inverse = 1.0 / invW;
-    const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
-    s.normal += b1 * p.n1 + b2 * p.n2;
+#if INTERPOLATES
+  precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
+  precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
+  precise const float inverse = 1.0 / invW;
+  const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
+  s.normal += b1 * p.n1 + b2 * p.n2;
 #if HAS_TEXTURES
-    if (material.atlas != 0u) {
-      material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
-      const vec2 uv2 = p.more.xy;
-      s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
-      // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
-      s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
-      s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
-    }
+  if (material.atlas != 0u) {
+    material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
+    const vec2 uv2 = p.more.xy;
+    s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
+    // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
+    s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
+    s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
+  }
 #endif
 #if HAS_GRADIENTS
-    if ((bits & PREPARED_COLORED) != 0u) {
-      const vec4 c0 = unpackUnorm4x8(p.firstColor);
-      const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
-                     b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
-      material.baseColor.rgb *= c.rgb;
-      if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
-    }
-#endif
+  if ((bits & PREPARED_COLORED) != 0u) {
+    const vec4 c0 = unpackUnorm4x8(p.firstColor);
+    const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
+                   b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
+    material.baseColor.rgb *= c.rgb;
+    if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
   }
+#endif
+#endif
   return shade(material, s, color);
 }
 

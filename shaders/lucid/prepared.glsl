@@ -5,19 +5,16 @@
 
 #include "lucid/fragment.glsl"
 
-// Places of a team. Few, since shared memory is what limits how many subgroups a GPU holds: an NVIDIA
+// Words of 16 bytes. All triangles need the first four; lanes that read the same word take turns like
+// any others. An odd number, so that the accesses of neighbouring lanes fall into different banks.
+#define HAS_MORE (HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
+#define PREPARED_WORDS (HAS_MORE ? 9u : INTERPOLATES ? 7u : 5u)
+
+// Places of a team: even, since they are shaded in pairs, and with room for two words of each of 32
+// lanes (sampleWord). Few, since shared memory is what limits how many subgroups a GPU holds: an NVIDIA
 // H200 gives it 64 KiB of each multiprocessor, whatever it has.
-#define PREPARED_COUNT 10u  // and room for two words of each of 32 lanes: sampleWord()
-
-// Words of 16 bytes, an odd number, so that the accesses of neighbouring lanes fall into different
-// banks. All triangles need the first four; lanes that read the same word take turns like any others.
-#define INTERPOLATES (HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
-#define PREPARED_WORDS (INTERPOLATES ? 9u : 7u)
+#define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 14u)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
-
-bool hasAttributes(Prepared p) {
-  return INTERPOLATES && (floatBitsToUint(p.w.w) & (PREPARED_ATLAS | PREPARED_COLORED)) != 0u;
-}
 
 void storePrepared(uint at, Prepared p) {
   const uint place = at * PREPARED_WORDS;
@@ -25,15 +22,15 @@ void storePrepared(uint at, Prepared p) {
   preparedWords[place + 1u] = p.n0;
   preparedWords[place + 2u] = p.color;
   preparedWords[place + 3u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
-  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) == 0u) {
-    preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
-    preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
-    preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
-    if (hasAttributes(p)) {
-      preparedWords[place + 7u] = p.uvs;
-      preparedWords[place + 8u] = p.more;
-    }
-  }
+#if INTERPOLATES
+  preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
+  preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
+  preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
+#endif
+#if HAS_TEXTURES == 1 || HAS_GRADIENTS == 1
+  preparedWords[place + 7u] = p.uvs;
+  preparedWords[place + 8u] = p.more;
+#endif
 }
 
 Prepared loadPrepared(uint at) {
@@ -43,18 +40,18 @@ Prepared loadPrepared(uint at) {
   p.n0 = preparedWords[place + 1u];
   p.color = preparedWords[place + 2u];
   p.range = preparedWords[place + 3u];
-  if ((floatBitsToUint(p.w.w) & PREPARED_FLAT) == 0u) {
-    p.b1 = preparedWords[place + 4u];
-    p.b2 = preparedWords[place + 5u];
-    const vec4 last = preparedWords[place + 6u];
-    p.n1 = vec3(p.b1.w, p.b2.w, last.w);
-    p.n2 = last.xyz;
-    if (hasAttributes(p)) {
-      p.firstColor = floatBitsToUint(p.range.w);
-      p.uvs = preparedWords[place + 7u];
-      p.more = preparedWords[place + 8u];
-    }
-  }
+#if INTERPOLATES
+  p.b1 = preparedWords[place + 4u];
+  p.b2 = preparedWords[place + 5u];
+  const vec4 last = preparedWords[place + 6u];
+  p.n1 = vec3(p.b1.w, p.b2.w, last.w);
+  p.n2 = last.xyz;
+#endif
+#if HAS_TEXTURES == 1 || HAS_GRADIENTS == 1
+  p.firstColor = floatBitsToUint(p.range.w);
+  p.uvs = preparedWords[place + 7u];
+  p.more = preparedWords[place + 8u];
+#endif
   return p;
 }
 
