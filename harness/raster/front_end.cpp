@@ -11,10 +11,6 @@ namespace {
 
 using Stage = vk::PipelineStageFlagBits2;
 
-// Enough for every invocation of a large GPU; each workgroup takes the next large triangle after
-// this many.
-constexpr std::uint32_t largeGroups = 2048;
-
 /// A sixteenth more than was counted, so that a slowly turning camera does not grow every frame.
 std::uint32_t withSlack(std::uint64_t counted) {
   constexpr std::uint64_t most = 0xfffffff0u;
@@ -153,13 +149,13 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     frame.barrier(compute, compute);
   });
   frame.stage("binning", [&] {
-    run(countLarge_, [&] { frame.commands.dispatch(largeGroups, 1, 1); });
+    run(countLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
     frame.barrier(compute, compute);
     run(offsets_, [&] { frame.commands.dispatch(divideUp(bins(), OFFSET_GROUP), 1, 1); });
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(writeSmall_,
         [&] { frame.commands.dispatchIndirect(counters_.vk(), offsetof(RasterCounters, small)); });
-    run(writeLarge_, [&] { frame.commands.dispatch(largeGroups, 1, 1); });
+    run(writeLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
     frame.barrier(compute, compute);
   });
 }

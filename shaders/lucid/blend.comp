@@ -247,6 +247,7 @@ TEAM_MAIN void main() {
 #else
   const uint inRow = push.counters.c.low.x;
 #endif
+  if (push.counters.c.overflow != 0u) return;
   const uint group = gl_WorkGroupID.y * inRow + gl_WorkGroupID.x;
   const uint i = subgroupBroadcastFirst(group * TEAMS + gl_SubgroupID);
 #if HIGH

@@ -40,15 +40,15 @@ shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh
 shared uint last;
 
 struct Span {
-  Bin bin;
+  Part part;
   ivec2 region;      // the bin's first pixel
   ivec2 extent;      // pixels of it that are on the screen
   uint first, count; // triangles of the bin's list
 };
 
-uint slotOf(Bin bin, uint i) {
-  if (i < 2u * bin.quads) return 2u * push.entries.at[bin.quadOffset + i / 2u] + i % 2u;
-  return push.entries.at[bin.triangleOffset + i - 2u * bin.quads];
+uint slotOf(Part part, uint i) {
+  if (i < 2u * part.quads) return 2u * push.entries.at[part.first + i / 2u] + i % 2u;
+  return push.entries.at[part.first + i - part.quads];
 }
 
 ivec2 cornerIn(ivec2 region, uint block) {
@@ -84,7 +84,7 @@ void findStrips(Span span, bool walks) {
     const uint number = self * RUN + r;
     reached[r] = uvec2(0u);
     if (number < span.count) {
-      const uint slot = slotOf(span.bin, span.first + number);
+      const uint slot = slotOf(span.part, span.first + number);
       slots[number] = slot;
       if (walks) reached[r] = stripsOf(span, slot);
     }
@@ -197,9 +197,17 @@ void makeLists(uint number) {
   barrier();
   if (self == 0u) {
     base = total > 0u ? atomicAdd(push.counters.c.triHalfBlocks, total) : 0u;
+    if (base + total > push.listCapacity) atomicMax(push.counters.c.overflow, 1u);
     if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
     if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.filterJobs, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
+    // Workgroups for what there is so far: the most that any says.
+    const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
+    const uint low = lowLists > 0u ? (firstLow + lowLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
+    atomicMax(push.counters.c.ordered.x, min(ordered, MAX_GROUPS));
+    atomicMax(push.counters.c.ordered.y, (ordered + MAX_GROUPS - 1u) / MAX_GROUPS);
+    atomicMax(push.counters.c.low.x, min(low, MAX_GROUPS));
+    if (highLists > 0u) atomicMax(push.counters.c.high.x, min(firstHigh + highLists, MAX_GROUPS));
   }
   barrier();
   if (self < HALF_BLOCKS) {
@@ -221,11 +229,11 @@ void goThrough(Part part, uint place) {
   const uint self = gl_LocalInvocationIndex;
   const uvec2 grid = (push.size + BIN_SIZE - 1u) / BIN_SIZE;
   Span span;
-  span.bin = push.bins.at[part.bin];
+  span.part = part;
   span.region = ivec2(uvec2(part.bin % grid.x, part.bin / grid.x) * BIN_SIZE);
   span.extent = min(ivec2(push.size) - span.region, ivec2(BIN_SIZE));
   span.first = part.number * PART_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
-  span.count = min(2u * span.bin.quads + span.bin.triangles - span.first, PART_TRIANGLES);
+  span.count = min(2u * part.quads + part.triangles - span.first, PART_TRIANGLES);
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
   if (self == 0u) kept = 0u;
 #if PASS == 2
@@ -250,29 +258,31 @@ void goThrough(Part part, uint place) {
     for (uint k = self; k < kept; k += GROUP) writeKeptItem(span, keptMasks[k], keptPlaces[k]);
   }
 #elif PASS == 1
-  if (self < HALF_BLOCKS)
+  if (self < HALF_BLOCKS) {
     push.partLists.at[place].first[self] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
-  memoryBarrierBuffer();
+    memoryBarrierBuffer();
+  }
   barrier();
-  memoryBarrierBuffer();  // of what the others released, by the one invocation that says so
-  const uint parts = (2u * span.bin.quads + span.bin.triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
+  const uint parts = (2u * part.quads + part.triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
   if (self == 0u) {
+    memoryBarrierBuffer();  // of what the others released, by the one invocation that says so
     last = uint(atomicAdd(push.binBlocks.at[part.bin * HALF_BLOCKS].partsDone, 1u) + 1u == parts);
+    memoryBarrierBuffer();
     keptFirst = kept > KEPT ? 0u : atomicAdd(push.counters.c.kept, kept);
     push.partLists.at[place].kept = kept;
     push.partLists.at[place].keptFirst = keptFirst;
   }
-  memoryBarrierBuffer();
   barrier();
-  memoryBarrierBuffer();
-  // The others make room for nothing: barriers stay out of branches.
-  if (self < HALF_BLOCKS)
-    lengths[self] = last != 0u ? atomicAdd(push.binBlocks.at[own].count, 0u) : 0u;
-  makeLists(part.bin);
-  if (last != 0u && self < HALF_BLOCKS) push.binBlocks.at[own].first = starts[self];
   if (kept <= KEPT && keptFirst + kept <= push.listCapacity)
     for (uint k = self; k < kept; k += GROUP)
       push.list.at[push.listCapacity + keptFirst + k] = uvec2(keptMasks[k], keptPlaces[k]);
+  if (last == 0u) return;  // the same for all
+  if (self < HALF_BLOCKS) {
+    memoryBarrierBuffer();
+    lengths[self] = atomicAdd(push.binBlocks.at[own].count, 0u);
+  }
+  makeLists(part.bin);
+  if (self < HALF_BLOCKS) push.binBlocks.at[own].first = starts[self];
 #else
   if (self < HALF_BLOCKS)
     starts[self] = push.binBlocks.at[own].first + push.partLists.at[place].first[self];
@@ -288,11 +298,6 @@ void goThrough(Part part, uint place) {
 #endif
 }
 
-// As many workgroups, in rows that every device can dispatch.
-Dispatch dispatchOf(uint groups) {
-  return Dispatch(min(groups, MAX_GROUPS), (groups + MAX_GROUPS - 1u) / MAX_GROUPS, 1u);
-}
-
 void main() {
 #if PASS == 0
   const uint parts = push.rasterCounters.c.lowBins, firstPart = 0u, groupCount = push.rasterCounters.c.low.x;
@@ -301,28 +306,18 @@ void main() {
   const uint groupCount = push.rasterCounters.c.high.x;
 #endif
 #if PASS == 2
-  if (push.counters.c.triHalfBlocks > push.listCapacity) return;
+  if (push.counters.c.overflow != 0u) return;
+#else
+  if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex == 0u) {
+    push.counters.c.ordered.z = 1u;
+    push.counters.c.low.y = push.counters.c.low.z = 1u;
+    push.counters.c.high.y = push.counters.c.high.z = 1u;
+    push.counters.c.repair.y = push.counters.c.repair.z = 1u;
+    push.counters.c.deep.z = push.counters.c.deepResolve.y = push.counters.c.deepResolve.z = 1u;
+  }
 #endif
   for (uint i = gl_WorkGroupID.x; i < parts; i += groupCount) {
     goThrough(push.parts.at[firstPart + i], i);
     barrier();  // the shared counts are used anew
   }
-#if PASS < 2
-  if (gl_LocalInvocationIndex != 0u) return;
-  memoryBarrierBuffer();
-  const uint groups = push.rasterCounters.c.low.x + push.rasterCounters.c.high.x;
-  if (atomicAdd(push.counters.c.groupsDone, 1u) + 1u < groups) return;
-  memoryBarrierBuffer();
-  // The last workgroup to end, of either kind, knows all counts.
-  const bool ready = atomicAdd(push.counters.c.triHalfBlocks, 0u) <= push.listCapacity;
-  const uint ordered = (atomicAdd(push.counters.c.orderedLists, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
-  const uint low = (atomicAdd(push.counters.c.filterJobs, 0u) + LOW_TEAMS - 1u) / LOW_TEAMS;
-  const uint high = atomicAdd(push.counters.c.highLists, 0u);
-  push.counters.c.ordered = dispatchOf(ready ? ordered : 0u);
-  push.counters.c.low = Dispatch(ready ? min(low, MAX_GROUPS) : 0u, 1u, 1u);
-  push.counters.c.high = Dispatch(ready ? min(high, MAX_GROUPS) : 0u, 1u, 1u);
-  push.counters.c.repair = Dispatch(0u, 1u, 1u);
-  push.counters.c.deep = Dispatch(0u, 1u, 1u);
-  push.counters.c.deepResolve = Dispatch(0u, 1u, 1u);
-#endif
 }

@@ -77,7 +77,7 @@ struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
   uint orderedLists, highLists;  // half-blocks of at most ORDERED_LIST, and of more than LOW_LIST
   uint kept;                   // by parts of high bins, all together: at most triHalfBlocks
-  uint groupsDone;             // workgroups of blocks.comp
+  uint overflow;               // 1: some list does not fit, and none is to be read
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
   uint passedOn;               // those of them that go through two stages

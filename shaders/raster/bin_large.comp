@@ -1,9 +1,11 @@
 #version 460
-// Stage 2, binning of large triangles: a workgroup a triangle, an invocation a bin of its box, which
+// Stage 2, binning of large triangles: a subgroup a triangle, an invocation a bin of its box, which
 // is the balance between triangles of unlike sizes that the paper makes on the level of rows. COUNT 1:
 // phase 1, counts; COUNT 0: phase 3, writes.
 #include "raster/coverage.glsl"
 #include "raster/records.glsl"
+
+#extension GL_KHR_shader_subgroup_basic : require
 
 layout(local_size_x = LARGE_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
@@ -17,7 +19,8 @@ void main() {
 #endif
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
   const uint quads = min(push.counters.c.largeQuads, push.quadCapacity);
-  for (uint i = gl_WorkGroupID.x; i < 2u * quads; i += gl_NumWorkGroups.x) {
+  const uint subgroups = LARGE_GROUPS * gl_NumSubgroups;
+  for (uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; i < 2u * quads; i += subgroups) {
     const uint quad = push.quadCapacity - 1u - i / 2u;
     const uint slot = 2u * quad + i % 2u;
     const RasterTriangle t = loadTriangle(push.triangles, slot);
@@ -25,7 +28,7 @@ void main() {
     const BinBox box = push.quadBins.at[quad];
     const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);
     const uvec2 extent = uvec2(box.last & 0xffffu, box.last >> 16) - first + 1u;
-    for (uint k = gl_LocalInvocationID.x; k < extent.x * extent.y; k += LARGE_GROUP) {
+    for (uint k = gl_SubgroupInvocationID; k < extent.x * extent.y; k += gl_SubgroupSize) {
       const uvec2 place = first + uvec2(k % extent.x, k / extent.x);
       const ivec2 region = ivec2(place * BIN_SIZE);
       // Trivial reject (Abrash 2009): the bin's corner that lies deepest inside is outside.

@@ -35,16 +35,17 @@ void main() {
     if (allKinds >> 16 > 0u) atomicAdd(push.counters.c.highBins, allKinds >> 16);
   }
   first = subgroupBroadcastFirst(first);
+  const uint list = first.x + ownBefore;
   if (own > 0u) {
-    push.bins.at[b].quadOffset = first.x + ownBefore;
-    push.bins.at[b].triangleOffset = first.x + ownBefore + quads;
+    push.bins.at[b].quadOffset = list;
+    push.bins.at[b].triangleOffset = list + quads;
   }
-  if (low) push.parts.at[first.y + lowBefore] = Part(b, 0u);
+  if (low) push.parts.at[first.y + lowBefore] = Part(b, 0u, list, quads, triangles);
   // Each high bin rounds up: room for all where the entries fit.
   const uint room = 2u * (push.entryCapacity / PART_TRIANGLES + 1u) + bins;
   for (uint p = 0u; p < highParts; ++p) {
     const uint place = first.z + partsBefore + p;
-    if (place < room) push.parts.at[bins + place] = Part(b, p);
+    if (place < room) push.parts.at[bins + place] = Part(b, p, list, quads, triangles);
   }
 
   memoryBarrierBuffer();

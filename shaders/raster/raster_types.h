@@ -19,7 +19,8 @@ using uvec4 = glm::uvec4;
 #define GUARD_BAND (1 << 22)     // snapped coordinates lie within: edge functions fit into 64 bits
 #define SETUP_GROUP 256u         // quads of one workgroup of setup
 #define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
-#define LARGE_GROUP 64u          // invocations that share one large triangle in binning
+#define LARGE_GROUP 128u         // invocations of a workgroup of bin_large
+#define LARGE_GROUPS 1024u       // of them: enough to fill a large GPU, and quick to start for nothing
 #define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
@@ -82,6 +83,7 @@ struct Bin {
 struct Part {
   uint bin;
   uint number;  // among the bin's parts
+  uint first, quads, triangles;  // the bin's list: quads from `first` on, then triangles
 };
 
 // First and last bin, each x | y << 16.
@@ -128,7 +130,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer IrregularBuf
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ShadeTriangleBuffer { PackedShadeTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AttributeBuffer { QuadAttributes at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBuffer { Bin at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer PartBuffer { Part at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PartBuffer { Part at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterCounterBuffer { RasterCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BinBoxBuffer { BinBox at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordBuffer { uint at[]; };
