@@ -36,7 +36,7 @@ class Method {
   /// on return the target must hold the finished image, writes not yet made visible.
   virtual void record(const Frame& frame) = 0;
 
-  /// Whether record() calls Frame::finishTarget(), once, and leaves the target alone until then.
+  /// Whether record() calls Frame::finishTarget() and leaves the target alone until then.
   virtual bool finishesTarget() const { return false; }
 
   /// After the device is done with the frame.

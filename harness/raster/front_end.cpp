@@ -141,7 +141,7 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     zeroed.insert(zeroed.end(), alsoZeroed);
     zeroFill_.record(frame.commands, zeroed);
     frame.barrier(compute, compute);
-    frame.finishTarget();  // beside the setup, which leaves room on a GPU
+    frame.finishTarget(0);  // beside steps that leave room on a GPU
     run(setup_, [&] {
       const std::uint32_t groups = divideUp(std::max(quadCount_, 1u), SETUP_GROUP);
       frame.commands.dispatch(std::min(groups, MAX_GROUPS), divideUp(groups, MAX_GROUPS), 1);
@@ -149,8 +149,10 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     frame.barrier(compute, compute);
   });
   frame.stage("binning", [&] {
+    frame.finishTarget(1);
     run(countLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
     frame.barrier(compute, compute);
+    frame.finishTarget(2);
     run(offsets_, [&] { frame.commands.dispatch(divideUp(bins(), OFFSET_GROUP), 1, 1); });
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(writeSmall_,

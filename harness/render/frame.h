@@ -61,13 +61,15 @@ struct Frame {
   std::uint64_t constants;     ///< address of the FrameConstants
   bool instrumented;           ///< a labelled run: stages are timed, counters may cost time
   FrameTimer& timer;
-  std::function<void()> fillTarget = {};  ///< see finishTarget()
+  std::function<void(std::uint32_t part)> fillTarget = {};  ///< see finishTarget()
 
-  /// For methods that say so (Method::finishesTarget): fills the target with the background if that
-  /// is still to be done, by a compute shader, beside which other work may run. Behind it the
-  /// method has a barrier between compute shaders before it touches the target.
-  void finishTarget() const {
-    if (fillTarget) fillTarget();
+  /// For methods that say so (Method::finishesTarget), part = 0, 1, ... targetParts - 1 in turn:
+  /// fills a part of the target with the background, if that is still to be done, by a compute
+  /// shader, beside which short dispatches can run. Behind the last the method has a barrier
+  /// between compute shaders before it touches the target.
+  static constexpr std::uint32_t targetParts = 3;
+  void finishTarget(std::uint32_t part) const {
+    if (fillTarget) fillTarget(part);
   }
 
   /// Brackets a stage: a row in the results. Outside instrumented frames nothing is recorded, since

@@ -14,6 +14,12 @@ using Layout = vk::ImageLayout;
 /// counters that only show part of the need, but not without end.
 constexpr int maxRecordings = 12;
 
+/// Of background.comp.
+struct BackgroundPush {
+  glm::vec4 color;
+  std::uint32_t firstRow;  // of workgroups
+};
+
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
@@ -92,10 +98,10 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
       }
       // Stages that are timed apart do not overlap.
       if (method.finishesTarget() && !instrumented) {
-        frame.fillTarget = [&] { recordBackground(frame); };
+        frame.fillTarget = [&](std::uint32_t part) { recordBackground(frame, part); };
         return;
       }
-      recordBackground(frame);
+      for (std::uint32_t part = 0; part < Frame::targetParts; ++part) recordBackground(frame, part);
       target_.color().transition(commands_, Layout::eGeneral, Layout::eGeneral,
                                  Stage::eComputeShader, Access::eShaderStorageWrite,
                                  Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
@@ -166,13 +172,18 @@ void Renderer::recordOpaque(const Frame& frame) const {
 // Where nothing is opaque the depth stays that of the first frame, infinitely far everywhere:
 // methods read it and do not write it. The colour is filled by a compute shader: clears go through
 // the rasterizer, and GPUs that have little of it take longer over them than over a method.
-void Renderer::recordBackground(const Frame& frame) const {
-  target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,
-                             Stage::eAllCommands, Access::eMemoryWrite, Stage::eComputeShader,
-                             Access::eShaderStorageWrite);
+void Renderer::recordBackground(const Frame& frame, std::uint32_t part) const {
+  if (part == 0)
+    target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,
+                               Stage::eAllCommands, Access::eMemoryWrite, Stage::eComputeShader,
+                               Access::eShaderStorageWrite);
   background_.bind(frame.commands, frame.bindings);
-  background_.push(frame.commands, backgroundColor);
-  frame.commands.dispatch((target_.width() + 31) / 32, (target_.height() + 31) / 32, 1);
+  const std::uint32_t rows = (target_.height() + 31) / 32;  // of workgroups
+  const std::uint32_t first = rows * part / Frame::targetParts;
+  const std::uint32_t end = rows * (part + 1) / Frame::targetParts;
+  if (first == end) return;
+  background_.push(frame.commands, BackgroundPush{backgroundColor, first});
+  frame.commands.dispatch((target_.width() + 31) / 32, end - first, 1);
 }
 
 std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {

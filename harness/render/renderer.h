@@ -38,7 +38,7 @@ class Renderer {
  private:
   FrameResult renderOnce(Method& method, const Camera& camera, bool instrumented, Status& status);
   void recordOpaque(const Frame& frame) const;
-  void recordBackground(const Frame& frame) const;
+  void recordBackground(const Frame& frame, std::uint32_t part) const;
 
   const Device& device_;
   const GpuScene& scene_;
