@@ -1,4 +1,6 @@
-// The one shading of all methods: whoever rasterizes, the colour of a fragment is made here.
+// The one shading of all methods: whoever rasterizes, the colour of a fragment is made here. `precise`,
+// and with multiply-adds written as such: compilers that choose for themselves where to fuse them choose
+// differently from program to program (NVIDIA's 580.159.04 did), and images would differ in the last bit.
 #ifndef OITLAB_SHADE_GLSL
 #define OITLAB_SHADE_GLSL
 
@@ -23,16 +25,18 @@ const float ambient = 0.2;
 // devices make of gradients differs: Vulkan lets them approximate, and deep
 // foliage shows it.
 float levelOfDetail(vec2 dx, vec2 dy, vec2 atlasSize) {
-  const vec2 texelsX = dx * atlasSize, texelsY = dy * atlasSize;
-  return 0.5 * log2(max(max(dot(texelsX, texelsX), dot(texelsY, texelsY)), 1e-12));
+  precise const vec2 texelsX = dx * atlasSize, texelsY = dy * atlasSize;
+  precise const float right = fma(texelsX.x, texelsX.x, texelsX.y * texelsX.y);
+  precise const float down = fma(texelsY.x, texelsY.x, texelsY.y * texelsY.y);
+  return 0.5 * log2(max(max(right, down), 1e-12));
 }
 
 vec4 sampleTexture(GpuMaterial material, Surface s) {
   // Textures repeat inside an atlas, so the wrap is ours; the gradients are of the unwrapped uv and
   // have no seam where fract() jumps.
-  const vec2 uv = material.atlasRect.xy + fract(s.uv) * material.atlasRect.zw;
-  const vec2 dx = s.uvDx * material.atlasRect.zw;
-  const vec2 dy = s.uvDy * material.atlasRect.zw;
+  precise const vec2 uv = fma(fract(s.uv), material.atlasRect.zw, material.atlasRect.xy);
+  precise const vec2 dx = s.uvDx * material.atlasRect.zw;
+  precise const vec2 dy = s.uvDy * material.atlasRect.zw;
   if (material.atlas == 1u) {
     const float level = levelOfDetail(dx, dy, vec2(textureSize(opaqueAtlas, 0)));
     return vec4(textureLod(opaqueAtlas, uv, level).rgb, 1.0);
@@ -50,8 +54,13 @@ bool shade(GpuMaterial material, Surface s, out vec4 color) {
   if (material.atlas != 0u) color *= sampleTexture(material, s);
   // The cutoff is that of the final alpha: an opacity override has scaled it (scene/scene.h).
   if (color.a < material.alphaCutoff) return false;
-  const float wrapped = 0.5 + 0.5 * dot(normalize(s.normal), toLight);
-  color.rgb *= mix(ambient, 1.0, wrapped);
+  const vec3 n = s.normal;
+  precise const float lengthSquared = fma(n.x, n.x, fma(n.y, n.y, n.z * n.z));
+  precise const float towards = fma(n.x, toLight.x, fma(n.y, toLight.y, n.z * toLight.z));
+  precise const float cosine = towards * inversesqrt(lengthSquared);
+  precise const float light = fma(1.0 - ambient, fma(0.5, cosine, 0.5), ambient);
+  precise const vec3 lit = color.rgb * light;
+  color.rgb = lit;
   color.a = clamp(color.a, 0.0, 1.0);
   return true;
 }

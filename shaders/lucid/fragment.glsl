@@ -96,7 +96,8 @@ Prepared prepare(uint slot, ivec2 corner) {
   precise const float b1 = fma(s.b1Slope.x, d.x, fma(s.b1Slope.y, d.y, weights.x));
   precise const float b2 = fma(s.b2Slope.x, d.x, fma(s.b2Slope.y, d.y, weights.y));
   const vec3 n0 = unpackNormal(s.normals[0]);
-  const vec3 n1 = unpackNormal(s.normals[1]) - n0, n2 = unpackNormal(s.normals[2]) - n0;
+  precise const vec3 n1 = unpackNormal(s.normals[1]) - n0;
+  precise const vec3 n2 = unpackNormal(s.normals[2]) - n0;
   Prepared p;
   uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas;
   p.firstColor = 0u;
@@ -151,23 +152,29 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
   precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
   precise const float inverse = 1.0 / invW;
-  const float b1 = clamp(over1 * inverse, 0.0, 1.0), b2 = clamp(over2 * inverse, 0.0, 1.0);
-  s.normal += b1 * p.n1 + b2 * p.n2;
+  precise const vec2 b = clamp(vec2(over1, over2) * inverse, 0.0, 1.0);
+  const float b1 = b.x, b2 = b.y;
+  precise const vec3 normal = fma(vec3(b1), p.n1, fma(vec3(b2), p.n2, p.n0.xyz));
+  s.normal = normal;
 #if HAS_TEXTURES
   if (material.atlas != 0u) {
     material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
     const vec2 uv2 = p.more.xy;
-    s.uv = p.uvs.xy + b1 * p.uvs.zw + b2 * uv2;
+    precise const vec2 uv = fma(vec2(b1), p.uvs.zw, fma(vec2(b2), uv2, p.uvs.xy));
     // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
-    s.uvDx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - s.uv * p.w.y) * inverse;
-    s.uvDy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - s.uv * p.w.z) * inverse;
+    precise const vec2 dx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - uv * p.w.y) * inverse;
+    precise const vec2 dy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - uv * p.w.z) * inverse;
+    s.uv = uv;
+    s.uvDx = dx;
+    s.uvDy = dy;
   }
 #endif
 #if HAS_GRADIENTS
   if ((bits & PREPARED_COLORED) != 0u) {
     const vec4 c0 = unpackUnorm4x8(p.firstColor);
-    const vec4 c = c0 + b1 * (unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0) +
-                   b2 * (unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0);
+    precise const vec4 c1 = unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0;
+    precise const vec4 c2 = unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0;
+    precise const vec4 c = fma(vec4(b1), c1, fma(vec4(b2), c2, c0));
     material.baseColor.rgb *= c.rgb;
     if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
   }

@@ -1,5 +1,5 @@
 #version 460
-// Stage 2, binning of large triangles: a subgroup a triangle, an invocation a bin of its box, which
+// Stage 2, binning of large triangles: one or more subgroups a triangle, an invocation a bin of its box, which
 // is the balance between triangles of unlike sizes that the paper makes on the level of rows. COUNT 1:
 // phase 1, counts; COUNT 0: phase 3, writes.
 #include "raster/coverage.glsl"
@@ -19,8 +19,11 @@ void main() {
 #endif
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
   const uint quads = min(push.counters.c.largeQuads, push.quadCapacity);
-  const uint subgroups = LARGE_GROUPS * gl_NumSubgroups;
-  for (uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; i < 2u * quads; i += subgroups) {
+  // Where there are fewer triangles than subgroups, several share one.
+  const uint subgroups = LARGE_GROUPS * gl_NumSubgroups, sharers = max(subgroups / max(2u * quads, 1u), 1u);
+  for (uint job = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; job < 2u * quads * sharers;
+       job += subgroups) {
+    const uint i = job / sharers, share = job % sharers;
     const uint quad = push.quadCapacity - 1u - i / 2u;
     const uint slot = 2u * quad + i % 2u;
     const RasterTriangle t = loadTriangle(push.triangles, slot);
@@ -28,7 +31,8 @@ void main() {
     const BinBox box = push.quadBins.at[quad];
     const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);
     const uvec2 extent = uvec2(box.last & 0xffffu, box.last >> 16) - first + 1u;
-    for (uint k = gl_SubgroupInvocationID; k < extent.x * extent.y; k += gl_SubgroupSize) {
+    for (uint k = share * gl_SubgroupSize + gl_SubgroupInvocationID; k < extent.x * extent.y;
+         k += sharers * gl_SubgroupSize) {
       const uvec2 place = first + uvec2(k % extent.x, k / extent.x);
       const ivec2 region = ivec2(place * BIN_SIZE);
       // Trivial reject (Abrash 2009): the bin's corner that lies deepest inside is outside.
