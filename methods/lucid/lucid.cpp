@@ -77,22 +77,26 @@ class Lucid : public Method {
     const raster::RasterPush front = frontEnd_->addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
-    const BlendPush push = pushOf(frame, front);
+    BlendPush push = pushOf(frame, front);
     auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
       pipeline.bind(frame.commands, frame.bindings);
       pipeline.push(frame.commands, push);
       frame.commands.dispatchIndirect(counters_.vk(), offset);
     };
-    // The two write different half-blocks, so that no barrier parts them.
+    // These write different half-blocks, so that no barrier parts them; long lists first, since the
+    // last to end holds up the frame.
     frame.stage("high_raster", [&] {
       if (needed_.longLists) indirect(highRaster_, offsetof(LucidCounters, high));
     });
     frame.stage("low_raster", [&] {
-      if (ordersFirst()) {
-        indirect(ordered_, offsetof(LucidCounters, ordered));
-        frame.barrier(compute, compute | Stage::eDrawIndirect);
-      }
       indirect(lowRaster_, offsetof(LucidCounters, low));
+      if (!ordersFirst()) return;
+      indirect(ordered_, offsetof(LucidCounters, ordered));
+      if (!needed_.passedOn) return;
+      frame.barrier(compute, compute | Stage::eDrawIndirect);
+      push.flags |= PASSED_ON;
+      indirect(lowRaster_, offsetof(LucidCounters, passed));
+      push.flags &= ~PASSED_ON;
     });
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, front, push);
@@ -115,16 +119,6 @@ class Lucid : public Method {
       makeRoomForLists(withSlack(c.triHalfBlocks));
       return {.recordAgain = true};
     }
-    if (again && c.repairJobs == 0) return {.recordAgain = true};
-    // A short subgroup goes through each list several times.
-    const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
-    const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
-    const bool blended = !verifiesLoops() || c.blended == toBlend;
-    if (c.walked != c.expected || !blended)
-      fail<DeviceError>(
-          "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
-          "long loops early (too many triangles in a bin)",
-          c.walked, c.expected, c.blended, toBlend, device_->info().name);
     if (c.repairJobs > repairCapacity_) {
       makeRoomForRepairs(withSlack(c.repairJobs));
       again = true;
@@ -137,6 +131,15 @@ class Lucid : public Method {
       again = true;
     }
     if (again) return {.recordAgain = true};
+    // A short subgroup goes through each list several times.
+    const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
+    const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
+    const bool blended = !verifiesLoops() || c.blended == toBlend;
+    if (c.walked != c.expected || !blended)
+      fail<DeviceError>(
+          "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
+          "long loops early (too many triangles in a bin)",
+          c.walked, c.expected, c.blended, toBlend, device_->info().name);
     if (c.repairedPixels != c.pixelsToRepair)
       fail<DeviceError>("lucid: of {} pixels {} were repaired: {} ends long loops early",
                         c.pixelsToRepair, c.repairedPixels, device_->info().name);
@@ -147,7 +150,7 @@ class Lucid : public Method {
     frontEnd_->addCounters(status.counters);
     status.counters["fragments"] = c.samples;
     status.counters["half_blocks"] = c.triHalfBlocks;
-    status.counters["filter_jobs"] = c.filterJobs;
+    status.counters["filter_jobs"] = c.lowLists + c.passedJobs;
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
@@ -161,7 +164,7 @@ class Lucid : public Method {
   // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
   // a GPU some microseconds that has nothing to do.
   struct Needed {
-    bool highBins = false, longLists = false, repair = false;
+    bool highBins = false, longLists = false, passedOn = false, repair = false;
     bool operator==(const Needed&) const = default;
   };
 
@@ -170,6 +173,7 @@ class Lucid : public Method {
     const Needed before = needed_;
     needed_.highBins = needed_.highBins || frontEnd_->counted().highParts > 0;
     needed_.longLists = needed_.longLists || c.highLists > 0;
+    needed_.passedOn = needed_.passedOn || c.passedJobs > 0;
     needed_.repair = needed_.repair || c.repairJobs > 0;
     return needed_ != before;
   }

@@ -43,12 +43,12 @@ void repair(HalfBlock block, uint pixels) {
 
 // To the program with the depth filter. One workgroup for TEAMS jobs.
 void passOn(HalfBlock block, uint pixels) {
-  const uint job = atomicAdd(push.counters.c.filterJobs, 1u);
-  push.filterJobs.at[job] = PixelJob(block, pixels);
+  const uint job = atomicAdd(push.counters.c.passedJobs, 1u);
+  push.filterJobs.at[push.counters.c.lowLists + job] = PixelJob(block, pixels);
 #if VERIFY_LOOPS
   atomicAdd(push.counters.c.passedOn, block.count * (32u / OWNERS));
 #endif
-  if (job % TEAMS == 0u && job < MAX_GROUPS * TEAMS) atomicAdd(push.counters.c.low.x, 1u);
+  if (job % TEAMS == 0u && job < MAX_GROUPS * TEAMS) atomicAdd(push.counters.c.passed.x, 1u);
 }
 
 // The fragment of a prepared triangle at a pixel that it covers or, for nothing, at another.
@@ -245,7 +245,8 @@ TEAM_MAIN void main() {
 #elif ORDERED
   const uint inRow = push.counters.c.ordered.x;
 #else
-  const uint inRow = push.counters.c.low.x;
+  const bool passed = (push.flags & PASSED_ON) != 0u;
+  const uint inRow = passed ? push.counters.c.passed.x : push.counters.c.low.x;
 #endif
   if (push.counters.c.overflow != 0u) return;
   const uint group = gl_WorkGroupID.y * inRow + gl_WorkGroupID.x;
@@ -263,9 +264,11 @@ TEAM_MAIN void main() {
   if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
 #else
-  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, count = subgroupBroadcastFirst(push.counters.c.filterJobs);
+  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, lists = subgroupBroadcastFirst(push.counters.c.lowLists);
+  const uint first = passed ? lists : 0u;
+  const uint count = passed ? subgroupBroadcastFirst(push.counters.c.passedJobs) : lists;
   for (uint job = i; job < count; job += stride) {
-    const PixelJob pixels = push.filterJobs.at[job];
+    const PixelJob pixels = push.filterJobs.at[first + job];
     blendHalfBlock(uniformly(pixels.block), subgroupBroadcastFirst(pixels.pixels));
     teamBarrier();
   }

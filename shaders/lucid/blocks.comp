@@ -199,7 +199,7 @@ void makeLists(uint number) {
     base = total > 0u ? atomicAdd(push.counters.c.triHalfBlocks, total) : 0u;
     if (base + total > push.listCapacity) atomicMax(push.counters.c.overflow, 1u);
     if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
-    if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.filterJobs, lowLists);
+    if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.lowLists, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
     // Workgroups for what there is so far: the most that any says.
     const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
@@ -311,6 +311,7 @@ void main() {
   if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex == 0u) {
     push.counters.c.ordered.z = 1u;
     push.counters.c.low.y = push.counters.c.low.z = 1u;
+    push.counters.c.passed.y = push.counters.c.passed.z = 1u;
     push.counters.c.high.y = push.counters.c.high.z = 1u;
     push.counters.c.repair.y = push.counters.c.repair.z = 1u;
     push.counters.c.deep.z = push.counters.c.deepResolve.y = push.counters.c.deepResolve.z = 1u;

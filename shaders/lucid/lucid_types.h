@@ -29,6 +29,7 @@ using namespace oitlab::raster;
 #define COUNT_SAMPLES 1u
 #define REPAIR 2u
 #define SHOW_ERRORS 4u
+#define PASSED_ON 8u  // low raster takes what ordered raster passed on
 
 // The part of a triangle in one half-block: tri-half-block. In memory an uvec2, one transaction.
 struct TriHalfBlock {
@@ -75,13 +76,14 @@ struct DeepPixel {
 
 struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
-  uint orderedLists, highLists;  // half-blocks of at most ORDERED_LIST, and of more than LOW_LIST
+  uint orderedLists;           // half-blocks of at most ORDERED_LIST
+  uint lowLists, highLists;    // longer ones, and those of more than LOW_LIST
   uint kept;                   // by parts of high bins, all together: at most triHalfBlocks
   uint overflow;               // 1: some list does not fit, and none is to be read
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
   uint passedOn;               // those of them that go through two stages
-  uint filterJobs;             // half-blocks with pixels that go through the depth filter
+  uint passedJobs;             // half-blocks with pixels that ordered raster passed on to low raster
   uint pixelsToRepair;
   uint repairJobs;             // more than the capacity means overflow
   uint deepPixels;             // pixels too deep for repair.comp: more than the capacity means overflow
@@ -90,7 +92,7 @@ struct LucidCounters {
   uint unfinished;             // deep pixels whose sort wants more rounds
   uint invalidPixels, repairedPixels;
   uint samples;                // fragments: covered, in front of opaque, not cut out
-  Dispatch ordered, low;       // one workgroup for LOW_TEAMS half-blocks, or filter jobs
+  Dispatch ordered, low, passed;  // one workgroup for LOW_TEAMS half-blocks
   Dispatch high, repair;       // for one half-block, for one job
   Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
   Dispatch deepResolve;        // x: DEEP_RESOLVE_GROUP deep pixels each
