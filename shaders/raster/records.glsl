@@ -9,10 +9,7 @@ RasterTriangle loadTriangle(RasterTriangleBuffer triangles, uint slot) {
   return RasterTriangle(a, b.xy, uint(b.z), uint(b.w));
 }
 
-void storeTriangle(RasterTriangleBuffer triangles, uint slot, RasterTriangle t) {
-  triangles.at[slot].word[0] = t.v01;
-  triangles.at[slot].word[1] = ivec4(t.v2, int(t.id), int(t.flags));
-}
+uvec4[2] wordsOf(RasterTriangle t) { return uvec4[2](uvec4(t.v01), uvec4(uvec2(t.v2), t.id, t.flags)); }
 
 uint idOfTriangle(RasterTriangleBuffer triangles, uint slot) { return uint(triangles.at[slot].word[1].z); }
 
@@ -24,12 +21,11 @@ ShadeTriangle loadShading(ShadeTriangleBuffer shading, uint slot) {
                        uint[3](d.x, d.y, d.z), d.w);
 }
 
-void storeShading(ShadeTriangleBuffer shading, uint slot, ShadeTriangle s) {
-  shading.at[slot].word[0] = vec4(s.anchor, s.invW, s.minInvW);
-  shading.at[slot].word[1] = vec4(s.invWSlope, s.b1Slope);
-  shading.at[slot].word[2] = vec4(s.b2Slope, uintBitsToFloat(uvec2(s.id, s.flags)));
-  shading.at[slot].word[3] =
-      uintBitsToFloat(uvec4(s.normals[0], s.normals[1], s.normals[2], s.material));
+uvec4[4] wordsOf(ShadeTriangle s) {
+  return uvec4[4](floatBitsToUint(vec4(s.anchor, s.invW, s.minInvW)),
+                  floatBitsToUint(vec4(s.invWSlope, s.b1Slope)),
+                  uvec4(floatBitsToUint(s.b2Slope), s.id, s.flags),
+                  uvec4(s.normals[0], s.normals[1], s.normals[2], s.material));
 }
 
 #endif

@@ -14,6 +14,9 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 shared uint groupSmall, groupLarge, firstSmall, firstLarge;
 shared uint groupTriangles, groupDegenerate, groupBackFacing;
 
+// Records as they lie in memory.
+layout(buffer_reference, scalar, buffer_reference_align = 16) writeonly buffer RecordWordBuffer { uvec4 at[]; };
+
 // A Vertex as it lies in memory: whole words, like the records (raster_types.h).
 struct PackedVertex {
   vec4 positionNormal;
@@ -30,20 +33,26 @@ struct Quad {
 
 uint component(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 
-void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint id, ivec4 box,
-                   Quad quad) {
+struct Records {
+  RasterTriangle raster;
+  ShadeTriangle shading;
+  bool visible;  // `shading` is to be stored
+};
+
+Records makeRecords(Corner a, Corner b, Corner c, uvec3 corners, uint id, ivec4 box, Quad quad) {
+  Records r;
+  r.visible = !isEmpty(box);
   uint flags = 0u;
   ivec2 v1 = b.snapped, v2 = c.snapped;
-  if (!isEmpty(box)) {
+  if (r.visible) {
     const bool regular = a.snaps && b.snaps && c.snaps;
     const bool positive = regular ? signedArea(a.snapped, b.snapped, c.snapped) > 0
                                   : dot(edgePlane(a.p, b.p), c.p) > 0.0;
     flags = TRIANGLE_VISIBLE | quad.flags;
     v1 = positive ? b.snapped : c.snapped;
     v2 = positive ? c.snapped : b.snapped;
-    ShadeTriangle shading;
     if (regular) {
-      shading = regularPlanes(a, b, c, corners);
+      r.shading = regularPlanes(a, b, c, corners);
     } else {
       const uint index = atomicAdd(push.counters.c.irregularTriangles, 1u);
       const uint last = uint(positive ? c.snaps : b.snaps), middle = uint(positive ? b.snaps : c.snaps);
@@ -51,7 +60,7 @@ void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint 
                (uint(a.snaps) | middle << 1 | last << 2) << TRIANGLE_SNAPPED_SHIFT;
       // The anchor lies amid the visible part: farther away it would cost precision.
       vec2 weights;
-      shading = irregularPlanes(a.p, b.p, c.p, vec2((box.xy + box.zw) / 2) + 0.5, weights);
+      r.shading = irregularPlanes(a.p, b.p, c.p, vec2((box.xy + box.zw) / 2) + 0.5, weights);
       if (index < push.irregularCapacity) {
         push.irregular.at[index].p[0] = a.p;
         push.irregular.at[index].p[1] = positive ? b.p : c.p;
@@ -61,14 +70,35 @@ void writeTriangle(uint slot, Corner a, Corner b, Corner c, uvec3 corners, uint 
       }
     }
     flags |= (corners.x | corners.y << 2 | corners.z << 4) << TRIANGLE_CORNER_SHIFT;
-    shading.id = id;
-    shading.flags = flags;
-    shading.normals = uint[3](component(quad.normals, corners.x), component(quad.normals, corners.y),
-                              component(quad.normals, corners.z));
-    shading.material = quad.material;
-    storeShading(push.shading, slot, shading);
+    r.shading.id = id;
+    r.shading.flags = flags;
+    r.shading.normals = uint[3](component(quad.normals, corners.x), component(quad.normals, corners.y),
+                                component(quad.normals, corners.z));
+    r.shading.material = quad.material;
   }
-  storeTriangle(push.triangles, slot, RasterTriangle(ivec4(a.snapped, v1), v2, id, flags));
+  r.raster = RasterTriangle(ivec4(a.snapped, v1), v2, id, flags);
+  return r;
+}
+
+// Stores two words, `place` and the next, of each lane that is `live`. Lanes go about it in pairs: each
+// store then fills whole sectors of 32 bytes. All lanes of the subgroup take part.
+void storeInPairs(RecordWordBuffer to, uint place, bool live, uvec4 first, uvec4 second) {
+  const uint odd = gl_SubgroupInvocationID & 1u;
+  const uvec4 theirs = subgroupShuffleXor(odd != 0u ? first : second, 1u);
+  const uvec2 other = subgroupShuffleXor(uvec2(place, uint(live)), 1u);
+  // The even lane's, then the odd lane's.
+  if (odd != 0u ? other.y != 0u : live) to.at[(odd != 0u ? other.x : place) + odd] = odd != 0u ? theirs : first;
+  if (odd != 0u ? live : other.y != 0u) to.at[(odd != 0u ? place : other.x) + odd] = odd != 0u ? second : theirs;
+}
+
+void storeRecords(uint slot, bool live, Records r) {
+  const uvec4 raster[2] = wordsOf(r.raster), shading[4] = wordsOf(r.shading);
+  RecordWordBuffer triangles = RecordWordBuffer(uint64_t(push.triangles));
+  RecordWordBuffer planes = RecordWordBuffer(uint64_t(push.shading));
+  storeInPairs(triangles, 2u * slot, live, raster[0], raster[1]);
+  const bool shaded = live && r.visible;
+  storeInPairs(planes, 4u * slot, shaded, shading[0], shading[1]);
+  storeInPairs(planes, 4u * slot + 2u, shaded, shading[2], shading[3]);
 }
 
 // In world space, as the paper has it: the eye is where the planes x, y and w of the clip space meet.
@@ -147,28 +177,31 @@ void main() {
     const Together t = gather(bin, valid);
     if (t.count > 0u) atomicAdd(push.bins.at[bin].quads, t.count);
   }
-  if (!visible) return;
-
   const uint place = rank + (small ? firstSmall : firstLarge);
-  if (place >= push.quadCapacity) return;  // counted all the same: the host makes room
+  const bool stored = visible && place < push.quadCapacity;  // else counted all the same: the host makes room
   const uint slot = small ? place : push.quadCapacity - 1u - place;
-  push.quadBins.at[slot] =
-      BinBox(firstBin.x | firstBin.y << 16, lastBin.x | lastBin.y << 16);
-  vec4 words[4];
-  QuadAttributes attributes;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    words[i] = vertices.at[indices[i]].uvColorMaterial;
-    attributes.colors[i] = floatBitsToUint(words[i].z);
+  Records records[2];
+  if (stored) {
+    push.quadBins.at[slot] =
+        BinBox(firstBin.x | firstBin.y << 16, lastBin.x | lastBin.y << 16);
+    vec4 words[4];
+    QuadAttributes attributes;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      words[i] = vertices.at[indices[i]].uvColorMaterial;
+      attributes.colors[i] = floatBitsToUint(words[i].z);
+    }
+    quadShading.material = floatBitsToUint(words[0].w);
+    quadShading.flags = 0u;
+    if (push.frame.c.materials.at[quadShading.material].atlas != 0u) quadShading.flags |= TRIANGLE_TEXTURED;
+    if (any(notEqual(attributes.colors, uvec4(0xffffffffu)))) quadShading.flags |= TRIANGLE_COLORED;
+    if (quadShading.flags != 0u) {
+      attributes.uvs01 = vec4(words[0].xy, words[1].xy);
+      attributes.uvs23 = vec4(words[2].xy, words[3].xy);
+      push.attributes.at[slot] = attributes;
+    }
+    records[0] = makeRecords(corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0], quadShading);
+    records[1] = makeRecords(corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1], quadShading);
   }
-  quadShading.material = floatBitsToUint(words[0].w);
-  quadShading.flags = 0u;
-  if (push.frame.c.materials.at[quadShading.material].atlas != 0u) quadShading.flags |= TRIANGLE_TEXTURED;
-  if (any(notEqual(attributes.colors, uvec4(0xffffffffu)))) quadShading.flags |= TRIANGLE_COLORED;
-  if (quadShading.flags != 0u) {
-    attributes.uvs01 = vec4(words[0].xy, words[1].xy);
-    attributes.uvs23 = vec4(words[2].xy, words[3].xy);
-    push.attributes.at[slot] = attributes;
-  }
-  writeTriangle(2u * slot, corner[0], corner[1], corner[2], uvec3(0, 1, 2), ids.x, box[0], quadShading);
-  writeTriangle(2u * slot + 1u, corner[0], corner[2], corner[3], uvec3(0, 2, 3), ids.y, box[1], quadShading);
+  storeRecords(2u * slot, stored, records[0]);
+  storeRecords(2u * slot + 1u, stored, records[1]);
 }
