@@ -149,15 +149,16 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     frame.barrier(compute, compute);
   });
   frame.stage("binning", [&] {
+    if (largeSeen_) {
+      run(countLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
+      frame.barrier(compute, compute);
+    }
     frame.finishTarget(1);
-    run(countLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
-    frame.barrier(compute, compute);
-    frame.finishTarget(2);
     run(offsets_, [&] { frame.commands.dispatch(divideUp(bins(), OFFSET_GROUP), 1, 1); });
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(writeSmall_,
         [&] { frame.commands.dispatchIndirect(counters_.vk(), offsetof(RasterCounters, small)); });
-    run(writeLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
+    if (largeSeen_) run(writeLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
     frame.barrier(compute, compute);
   });
 }
@@ -174,7 +175,9 @@ std::uint32_t FrontEnd::partCapacity() const {
 
 bool FrontEnd::grow() {
   const RasterCounters& c = counted();
-  if (c.ready != 0) return false;
+  const bool lacked = c.largeQuads > 0 && !largeSeen_;
+  largeSeen_ = largeSeen_ || lacked;
+  if (c.ready != 0) return lacked;
   const std::uint64_t quads = std::uint64_t(c.smallQuads) + c.largeQuads;
   if (quads > quadCapacity_) makeRoomForQuads(std::min(withSlack(quads), quadCount_));
   if (c.irregularTriangles > irregularCapacity_)

@@ -72,6 +72,7 @@ class FrontEnd {
   std::uint32_t quadCount_ = 0, degenerateQuads_ = 0;
   std::uint32_t binColumns_, binRows_;
   std::uint32_t quadCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
+  bool largeSeen_ = false;  // the steps for large quads are recorded from the first that is seen
   ZeroFill zeroFill_;
   Pipeline setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
   Buffer quads_, quadIds_, triangles_, irregular_, shading_, attributes_, quadBins_;

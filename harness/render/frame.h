@@ -67,7 +67,7 @@ struct Frame {
   /// fills a part of the target with the background, if that is still to be done, by a compute
   /// shader, beside which short dispatches can run. Behind the last the method has a barrier
   /// between compute shaders before it touches the target.
-  static constexpr std::uint32_t targetParts = 3;
+  static constexpr std::uint32_t targetParts = 2;
   void finishTarget(std::uint32_t part) const {
     if (fillTarget) fillTarget(part);
   }

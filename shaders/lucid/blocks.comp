@@ -18,9 +18,10 @@
 layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
 
-// What of a part fits is kept from counting to writing; what does not is rasterized again. Few parts
-// of the paper's scenes have more than 700.
-#define KEPT 1024u
+// What of a part fits is kept from counting to writing; what does not is rasterized again. Parts have
+// some 360 in a hairball, more in others: more room would serve a few, and cost all of them the shared
+// memory (docs/performance.md).
+#define KEPT 512u
 shared uint keptMasks[KEPT];
 shared uint keptPlaces[KEPT];  // half-block, triangle of the part, place in the half-block's list
 #define TRIANGLE_SHIFT 5  // above the half-block: PART_TRIANGLES
