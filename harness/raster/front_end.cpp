@@ -82,7 +82,8 @@ void FrontEnd::makeRoomForQuads(std::uint64_t quads) {
   for (Buffer* buffer : {&triangles_, &shading_, &attributes_, &quadBins_}) *buffer = Buffer();
   triangles_ = Buffer(device_, memory_, "triangle coverage", room * 2 * sizeof(RasterTriangle));
   shading_ = Buffer(device_, memory_, "triangle planes", room * 2 * sizeof(ShadeTriangle));
-  attributes_ = Buffer(device_, memory_, "quad attributes", room * sizeof(QuadAttributes));
+  attributes_ = Buffer(device_, memory_, "quad attributes",
+                       (options_.attributes ? room : 1) * sizeof(QuadAttributes));
   quadBins_ = Buffer(device_, memory_, "quad bins", room * sizeof(BinBox));
   quadCapacity_ = std::uint32_t(room);
 }

@@ -20,6 +20,7 @@ class FrontEnd {
  public:
   struct Options {
     bool backFaceCulling = false;
+    bool attributes = true;  ///< of quads: textures or vertex colours are there to be kept
   };
 
   /// `memory` must outlive this and lists the buffers; `scene` and `target` too. Takes the scene's

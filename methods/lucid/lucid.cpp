@@ -55,7 +55,8 @@ class Lucid : public Method {
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
-        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
+        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling"),
+                                  .attributes = textures_ || colors_});
     makePipelines(formatName(target.format()));
     const std::uint64_t halfBlocks = std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS;
     blocks_ = Buffer(device, memory_, "half-blocks", halfBlocks * sizeof(HalfBlock));

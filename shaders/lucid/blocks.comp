@@ -188,7 +188,8 @@ void makeLists(uint number) {
   barrier();
   uint rank = 0u, before = 0u;
   if (self < HALF_BLOCKS) {
-    [[unroll]] for (uint b = 0u; b < HALF_BLOCKS; ++b) before += b < self ? lengths[b] : 0u;
+    // Not all at once: that took 64 registers, and a third of the workgroups that there is room for.
+    [[dont_unroll]] for (uint b = 0u; b < self; ++b) before += lengths[b];
     const uint length = lengths[self];
     if (self == HALF_BLOCKS - 1u) total = before + length;
     if (length > LOW_LIST) rank = atomicAdd(highLists, 1u);
