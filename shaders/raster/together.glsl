@@ -9,7 +9,7 @@
 
 // Groups of lanes that are looked for; the rest add one by one. More do not pay where the order of
 // submission is random, and small subgroups (CPUs) have little to gather.
-#define TOGETHER_TURNS (gl_SubgroupSize >= 32u ? 8u : 0u)
+#define TOGETHER_TURNS (gl_SubgroupSize >= 32u ? 4u : 0u)
 
 struct Together {
   uint leader;  // lane that adds for all of them
