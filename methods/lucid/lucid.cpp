@@ -78,26 +78,27 @@ class Lucid : public Method {
     const raster::RasterPush front = frontEnd_->addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
-    BlendPush push = pushOf(frame, front);
+    const BlendPush push = pushOf(frame, front);
     auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
       pipeline.bind(frame.commands, frame.bindings);
       pipeline.push(frame.commands, push);
       frame.commands.dispatchIndirect(counters_.vk(), offset);
     };
-    // These write different half-blocks, so that no barrier parts them; long lists first, since the
-    // last to end holds up the frame.
-    frame.stage("high_raster", [&] {
-      if (needed_.longLists) indirect(highRaster_, offsetof(LucidCounters, high));
+    // Within a step no barrier parts the programs: their half-blocks are different ones. Long lists
+    // come first, since the last to end holds up the frame.
+    const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
+    frame.stage("sort", [&] {
+      if (needed_.longLists) indirect(sortHigh_, high);
+      if (needed_.filter) indirect(sortLow_, low);
     });
     frame.stage("low_raster", [&] {
-      indirect(lowRaster_, offsetof(LucidCounters, low));
-      if (!ordersFirst()) return;
-      indirect(ordered_, offsetof(LucidCounters, ordered));
-      if (!needed_.passedOn) return;
-      frame.barrier(compute, compute | Stage::eDrawIndirect);
-      push.flags |= PASSED_ON;
-      indirect(lowRaster_, offsetof(LucidCounters, passed));
-      push.flags &= ~PASSED_ON;
+      if (ordersFirst()) indirect(ordered_, offsetof(LucidCounters, ordered));
+      if (needed_.filter || needed_.longLists)
+        frame.barrier(compute, compute | Stage::eDrawIndirect);
+      if (needed_.filter) indirect(lowRaster_, low);
+    });
+    frame.stage("high_raster", [&] {
+      if (needed_.longLists) indirect(highRaster_, high);
     });
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, front, push);
@@ -165,7 +166,7 @@ class Lucid : public Method {
   // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
   // a GPU some microseconds that has nothing to do.
   struct Needed {
-    bool highBins = false, longLists = false, passedOn = false, repair = false;
+    bool highBins = false, longLists = false, filter = false, repair = false;
     bool operator==(const Needed&) const = default;
   };
 
@@ -174,7 +175,7 @@ class Lucid : public Method {
     const Needed before = needed_;
     needed_.highBins = needed_.highBins || frontEnd_->counted().highParts > 0;
     needed_.longLists = needed_.longLists || c.highLists > 0;
-    needed_.passedOn = needed_.passedOn || c.passedJobs > 0;
+    needed_.filter = needed_.filter || c.lowLists + c.passedJobs > 0;
     needed_.repair = needed_.repair || c.repairJobs > 0;
     return needed_ != before;
   }
@@ -186,6 +187,7 @@ class Lucid : public Method {
   // each other, so that a GPU is fastest with 1 (docs/performance.md); a CPU has fewer groups to
   // start.
   const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
+  const char* orderedTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
 
   // Whether short lists are first blended without the depth filter: quicker on a GPU, whose
   // subgroups then take less room; on a CPU the pixels that are passed on cost more than is won.
@@ -213,12 +215,22 @@ class Lucid : public Method {
         {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
     auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
       Defines defines = common;
+      defines["LOW_TEAMS"] = lowTeams();
       defines["ORDERED"] = list == std::string("ORDERED_LIST") ? "1" : "0";
       defines["HIGH"] = list == std::string("HIGH_LIST") ? "1" : "0";
       defines["TEAMS"] = teams;
       defines["LIST"] = list;
       defines["DEPTH_FILTER"] = std::to_string(filter);
       return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
+    };
+    auto sort = [&](const char* list, const char* teams) {
+      return Pipeline::compute(*device_, "lucid/sort_lists.comp",
+                               {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")},
+                                {"UNIFORM_CONTROL_FLOW", common.at("UNIFORM_CONTROL_FLOW")},
+                                {"HIGH", list == std::string("HIGH_LIST") ? "1" : "0"},
+                                {"TEAMS", teams},
+                                {"LIST", list}},
+                               {}, lanes);
     };
     // A workgroup a part of a bin. On a CPU a large one is no faster.
     const char* group = lanes >= 32 ? "256u" : "64u";
@@ -227,12 +239,15 @@ class Lucid : public Method {
           Pipeline::compute(*device_, "lucid/blocks.comp",
                             {{"PASS", std::to_string(pass)},
                              {"LOW_TEAMS", lowTeams()},
+                             {"ORDERED_TEAMS", orderedTeams()},
                              {"GROUP", group},
                              {"FIRST_LIST", ordersFirst() ? "ORDERED_LIST" : "0u"}});
     const std::int64_t filter = parameters_.integer("depth_filter");
-    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", lowTeams(), 1);
+    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", orderedTeams(), 1);
     lowRaster_ = raster("LOW_LIST", lowTeams(), filter);
     highRaster_ = raster("HIGH_LIST", "1u", filter);
+    sortLow_ = sort("LOW_LIST", lowTeams());
+    sortHigh_ = sort("HIGH_LIST", "1u");
     repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
     deepCapture_ = Pipeline::compute(*device_, "lucid/deep_capture.comp",
                                      {{"TARGET_FORMAT", format},
@@ -387,7 +402,8 @@ class Lucid : public Method {
   std::uint32_t deepRounds_ = 1;
   Needed needed_;
   std::array<Pipeline, 3> blocksPasses_;
-  Pipeline ordered_, lowRaster_, highRaster_, repair_, deepCapture_, deepResolve_;
+  Pipeline ordered_, sortLow_, sortHigh_, lowRaster_, highRaster_, repair_, deepCapture_,
+      deepResolve_;
   Buffer list_, keys_, blocks_, filterJobs_, binBlocks_, partLists_, repairs_, counters_, readback_,
       deepPixels_, nodes_;
 };

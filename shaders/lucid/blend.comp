@@ -1,10 +1,11 @@
 #version 460
-// Stage 3, phases 2 (sort) and 3 (shading and blending): a subgroup (a "team") a half-block. Three
-// programs:
-//   ordered  ORDERED, LIST = ORDERED_LIST: most pixels' fragments come nearly in the order of the sorted
-//            triangles, so that a depth filter of 1 will do; pixels in which it does not are passed on,
-//   low      LIST = LOW_LIST: these pixels, and half-blocks of longer lists, with the depth filter,
-//   high     LIST = HIGH_LIST: half-blocks of yet longer lists, with the depth filter.
+// Stage 3, phase 3 (shading and blending): a subgroup (a "team") a half-block. Three programs:
+//   ordered  ORDERED, LIST = ORDERED_LIST: short lists, which are sorted here. Most pixels' fragments come
+//            nearly in the order of the sorted triangles, so that a depth filter of 1 will do; pixels in
+//            which it does not are passed on,
+//   low      these pixels, and half-blocks of longer lists, with the depth filter,
+//   high     HIGH, half-blocks of yet longer lists, with the depth filter.
+// The latter two find their lists sorted (sort_lists.comp).
 //
 // Each lane owns a pixel: a subgroup of less than 32 lanes goes through the list several times, and of
 // one of 64 half the lanes own none.
@@ -17,7 +18,9 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 #include "lucid/depth_filter.glsl"
 #include "lucid/prepared.glsl"
 #include "lucid/samples.glsl"
+#if ORDERED
 #include "lucid/sort.glsl"
+#endif
 
 shared uint samplesOf[TEAMS * OWNERS];  // bit i: sample i falls on this pixel
 
@@ -41,14 +44,14 @@ void repair(HalfBlock block, uint pixels) {
   }
 }
 
-// To the program with the depth filter. One workgroup for TEAMS jobs.
+// To low raster, one workgroup for LOW_TEAMS jobs.
 void passOn(HalfBlock block, uint pixels) {
-  const uint job = atomicAdd(push.counters.c.passedJobs, 1u);
-  push.filterJobs.at[push.counters.c.lowLists + job] = PixelJob(block, pixels);
+  const uint job = push.counters.c.lowLists + atomicAdd(push.counters.c.passedJobs, 1u);
+  push.filterJobs.at[job] = PixelJob(block, pixels);
 #if VERIFY_LOOPS
   atomicAdd(push.counters.c.passedOn, block.count * (32u / OWNERS));
 #endif
-  if (job % TEAMS == 0u && job < MAX_GROUPS * TEAMS) atomicAdd(push.counters.c.passed.x, 1u);
+  atomicMax(push.counters.c.low.x, min(job / LOW_TEAMS + 1u, MAX_GROUPS));
 }
 
 // The fragment of a prepared triangle at a pixel that it covers or, for nothing, at another.
@@ -77,11 +80,19 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   return taken;
 }
 
+// Of the i-th tri-half-block from the front, in the list.
+#if ORDERED
+uint placeMask;
+uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & placeMask; }
+#else
+uint placeOf(HalfBlock block, uint i) { return push.keys.at[block.first + i]; }
+#endif
+
 // Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
 // pixels whose order went wrong.
-uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) {
+uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit) {
   const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
-  const uint firstKey = team * LIST, firstSample = team * OWNERS;
+  const uint firstSample = team * OWNERS;
   const bool owner = lane < OWNERS && (owned & (1u << bit)) != 0u;
   const vec2 pixel = vec2(pixelOf(bit));
   const ivec2 place = corner + ivec2(pixel);
@@ -94,7 +105,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
     TriHalfBlock item = TriHalfBlock(0u, 0u);
     if (first + lane < block.count) {
-      item = itemAt(push.list, block.first + (keys[firstKey + first + lane] & placeMask));
+      item = itemAt(push.list, block.first + placeOf(block, first + lane));
       item.mask &= owned;
     }
     covered |= item.mask;
@@ -185,26 +196,16 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit, uint placeMask) 
 }
 
 void blendHalfBlock(HalfBlock block, uint pixels) {
-  const uint lane = gl_SubgroupInvocationID, firstKey = gl_SubgroupID * LIST;
+  const uint lane = gl_SubgroupInvocationID;
   const ivec2 corner = cornerOf(block.number, push.size);
-  // Depths are sorted within their range, so that few bits tell them apart.
-  uint low = 0xffffffffu, high = 0u;
-  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
-    const uint key = push.keys.at[block.first + i];
-    keys[firstKey + i] = key;
-    low = min(low, key);
-    high = max(high, key);
-  }
-  const float farthest = uintBitsToFloat(subgroupMin(low)), nearest = uintBitsToFloat(subgroupMax(high));
-  const uint bits = findMSB(block.count) + 1;
-  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
-    keys[firstKey + i] = packKey(uintBitsToFloat(keys[firstKey + i]), farthest, nearest, i, bits);
-  sortKeys(firstKey, block.count);
+#if ORDERED
+  placeMask = sortList(gl_SubgroupID * LIST, block);
+#endif
   uint invalid = 0u;
   for (uint begin = 0u; begin < 32u; begin += OWNERS) {
     const uint owned = pixels & (0xffffffffu >> (32u - OWNERS)) << begin;
     if (owned != 0u) {
-      invalid |= sweep(block, corner, owned, min(begin + lane, 31u), (1u << bits) - 1u);
+      invalid |= sweep(block, corner, owned, min(begin + lane, 31u));
 #if VERIFY_LOOPS
     } else if (lane == 0u) {
       atomicAdd(push.counters.c.blended, block.count);
@@ -213,6 +214,9 @@ void blendHalfBlock(HalfBlock block, uint pixels) {
     teamBarrier();
   }
   invalid = subgroupOr(invalid);
+#if ORDERED
+  if (invalid != 0u) storeOrder(gl_SubgroupID * LIST, block, placeMask);
+#endif
   if (lane == 0u && invalid != 0u) {
 #if ORDERED
     passOn(block, invalid);
@@ -245,8 +249,7 @@ TEAM_MAIN void main() {
 #elif ORDERED
   const uint inRow = push.counters.c.ordered.x;
 #else
-  const bool passed = (push.flags & PASSED_ON) != 0u;
-  const uint inRow = passed ? push.counters.c.passed.x : push.counters.c.low.x;
+  const uint inRow = push.counters.c.low.x;
 #endif
   if (push.counters.c.overflow != 0u) return;
   const uint group = gl_WorkGroupID.y * inRow + gl_WorkGroupID.x;
@@ -255,7 +258,7 @@ TEAM_MAIN void main() {
   const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, count = subgroupBroadcastFirst(push.counters.c.highLists);
   for (uint job = i; job < count; job += stride) {
     const HalfBlock block = uniformly(push.blocks.at[push.halfBlocks - 1u - job]);
-    if (block.count > LIST) handOver(block);
+    if (block.count > HIGH_LIST) handOver(block);
     else blendHalfBlock(block, 0xffffffffu);
     teamBarrier();
   }
@@ -264,11 +267,10 @@ TEAM_MAIN void main() {
   if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
 #else
-  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, lists = subgroupBroadcastFirst(push.counters.c.lowLists);
-  const uint first = passed ? lists : 0u;
-  const uint count = passed ? subgroupBroadcastFirst(push.counters.c.passedJobs) : lists;
+  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS;
+  const uint count = subgroupBroadcastFirst(push.counters.c.lowLists + push.counters.c.passedJobs);
   for (uint job = i; job < count; job += stride) {
-    const PixelJob pixels = push.filterJobs.at[first + job];
+    const PixelJob pixels = push.filterJobs.at[job];
     blendHalfBlock(uniformly(pixels.block), subgroupBroadcastFirst(pixels.pixels));
     teamBarrier();
   }

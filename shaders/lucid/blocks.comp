@@ -204,7 +204,7 @@ void makeLists(uint number) {
     if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.lowLists, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
     // Workgroups for what there is so far: the most that any says.
-    const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
+    const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + ORDERED_TEAMS - 1u) / ORDERED_TEAMS : 0u;
     const uint low = lowLists > 0u ? (firstLow + lowLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
     atomicMax(push.counters.c.ordered.x, min(ordered, MAX_GROUPS));
     atomicMax(push.counters.c.ordered.y, (ordered + MAX_GROUPS - 1u) / MAX_GROUPS);
@@ -313,7 +313,6 @@ void main() {
   if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex == 0u) {
     push.counters.c.ordered.z = 1u;
     push.counters.c.low.y = push.counters.c.low.z = 1u;
-    push.counters.c.passed.y = push.counters.c.passed.z = 1u;
     push.counters.c.high.y = push.counters.c.high.z = 1u;
     push.counters.c.repair.y = push.counters.c.repair.z = 1u;
     push.counters.c.deep.z = push.counters.c.deepResolve.y = push.counters.c.deepResolve.z = 1u;

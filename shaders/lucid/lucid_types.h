@@ -18,10 +18,10 @@ using namespace oitlab::raster;
 #define HALF_BLOCKS_ACROSS 4u
 #define HALF_BLOCKS 32u  // of a bin
 
-// Tri-half-blocks that the programs of blend.comp sort in shared memory (section 2, phase 2).
-#define ORDERED_LIST 64u  // without the depth filter
-#define LOW_LIST 512u     // with it
-#define HIGH_LIST 1024u   // in high_raster; what is longer goes to repair.comp
+// Tri-half-blocks that are sorted in shared memory (section 2, phase 2).
+#define ORDERED_LIST 64u  // by ordered raster, on the way
+#define LOW_LIST 512u     // by sort_lists.comp, for low raster
+#define HIGH_LIST 1024u   // for high raster; what is longer goes to repair.comp
 #define REPAIR_LIST 1024u // fragments of a pixel that repair.comp sorts in shared memory
 #define ROW_REPAIR 256u   // lists longer than this are repaired by rows of pixels
 
@@ -29,7 +29,6 @@ using namespace oitlab::raster;
 #define COUNT_SAMPLES 1u
 #define REPAIR 2u
 #define SHOW_ERRORS 4u
-#define PASSED_ON 8u  // low raster takes what ordered raster passed on
 
 // The part of a triangle in one half-block: tri-half-block. In memory an uvec2, one transaction.
 struct TriHalfBlock {
@@ -92,7 +91,7 @@ struct LucidCounters {
   uint unfinished;             // deep pixels whose sort wants more rounds
   uint invalidPixels, repairedPixels;
   uint samples;                // fragments: covered, in front of opaque, not cut out
-  Dispatch ordered, low, passed;  // one workgroup for LOW_TEAMS half-blocks
+  Dispatch ordered, low;       // one workgroup for ORDERED_TEAMS or LOW_TEAMS half-blocks
   Dispatch high, repair;       // for one half-block, for one job
   Dispatch deep;               // x: deep pixels, y: parts of the longest of their lists
   Dispatch deepResolve;        // x: DEEP_RESOLVE_GROUP deep pixels each

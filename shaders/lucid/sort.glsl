@@ -63,4 +63,31 @@ void sortKeys(uint first, uint count) {
   teamBarrier();
 }
 
+// Sorts the list of a half-block by depth: keys[first, first + block.count) are its places, front to
+// back, in the bits of the mask that is returned. All lanes of the subgroup take part. The including
+// shader declares push.keys.
+uint sortList(uint first, HalfBlock block) {
+  const uint lane = gl_SubgroupInvocationID;
+  // Depths are sorted within their range, so that few bits tell them apart.
+  uint low = 0xffffffffu, high = 0u;
+  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
+    const uint key = push.keys.at[block.first + i];
+    keys[first + i] = key;
+    low = min(low, key);
+    high = max(high, key);
+  }
+  const float farthest = uintBitsToFloat(subgroupMin(low)), nearest = uintBitsToFloat(subgroupMax(high));
+  const uint bits = findMSB(block.count) + 1;
+  for (uint i = lane; i < block.count; i += SUBGROUP_SIZE)
+    keys[first + i] = packKey(uintBitsToFloat(keys[first + i]), farthest, nearest, i, bits);
+  sortKeys(first, block.count);
+  return (1u << bits) - 1u;
+}
+
+// Leaves the order for others, in place of the depths.
+void storeOrder(uint first, HalfBlock block, uint placeMask) {
+  for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
+    push.keys.at[block.first + i] = keys[first + i] & placeMask;
+}
+
 #endif
