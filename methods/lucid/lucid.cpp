@@ -187,7 +187,7 @@ class Lucid : public Method {
   // each other, so that a GPU is fastest with 1 (docs/performance.md); a CPU has fewer groups to
   // start.
   const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
-  const char* orderedTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
+  const char* orderedTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
 
   // Whether short lists are first blended without the depth filter: quicker on a GPU, whose
   // subgroups then take less room; on a CPU the pixels that are passed on cost more than is won.
