@@ -13,8 +13,9 @@ inline std::filesystem::path sharedScenes() {
   return dataRoot() / ".." / "shared" / "scenes";
 }
 
-#define OITLAB_NEEDS_SHARED_SCENES()                            \
-  if (!std::filesystem::is_directory(::oitlab::sharedScenes())) \
-  GTEST_SKIP() << "no folder " << ::oitlab::sharedScenes().lexically_normal().string()
+/// The manifest: a folder with a few of the scenes is not the library.
+#define OITLAB_NEEDS_SHARED_SCENES()                                        \
+  if (!std::filesystem::exists(::oitlab::sharedScenes() / "manifest.json")) \
+  GTEST_SKIP() << "no library of scenes in " << ::oitlab::sharedScenes().lexically_normal().string()
 
 }  // namespace oitlab
