@@ -2,8 +2,13 @@
 // end (raster/front_end.h) bins the triangles; here they become tri-half-blocks, sorted lists of
 // these, fragments, and a blended image. Where the paper's two-stage sort goes wrong, the pixel is
 // blended again in exact order.
+//
+//   programs  the shaders, for one device and scene
+//   buffers   what is kept between their steps
 #include "lucid/lucid_types.h"
 
+#include "lucid/buffers.h"
+#include "lucid/programs.h"
 #include "method/method.h"
 #include "raster/front_end.h"
 #include "util/error.h"
@@ -18,28 +23,6 @@ std::uint64_t withSlack(std::uint64_t counted) {
   return counted + counted / 16 + 64;
 }
 
-/// Whether a vertex has another colour than white.
-bool hasColors(const Scene& scene) {
-  return std::any_of(scene.vertices.begin(), scene.vertices.end(),
-                     [](const Vertex& v) { return v.color != 0xffffffffu; });
-}
-
-/// Whether the corners of a triangle differ in colour.
-bool hasGradients(const Scene& scene) {
-  const auto& v = scene.vertices;
-  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const auto& t) {
-    return v[t.x].color != v[t.y].color || v[t.x].color != v[t.z].color;
-  });
-}
-
-/// Whether the corners of a triangle differ in normal.
-bool isSmooth(const Scene& scene) {
-  const auto& v = scene.vertices;
-  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const auto& t) {
-    return v[t.x].normal != v[t.y].normal || v[t.x].normal != v[t.z].normal;
-  });
-}
-
 }  // namespace
 
 class Lucid : public Method {
@@ -47,34 +30,23 @@ class Lucid : public Method {
   void prepare(const Device& device, const GpuScene& scene, const Target& target,
                const Parameters& parameters) override {
     device_ = &device;
-    opaque_ = scene.opaqueCount() > 0;
-    textures_ = !scene.scene().textures.empty();
-    colors_ = hasColors(scene.scene());
-    gradients_ = colors_ && hasGradients(scene.scene());
-    smooth_ = isSmooth(scene.scene());
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
         raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling"),
-                                  .attributes = textures_ || colors_});
-    makePipelines(formatName(target.format()));
-    const std::uint64_t halfBlocks = std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS;
-    blocks_ = Buffer(device, memory_, "half-blocks", halfBlocks * sizeof(HalfBlock));
-    filterJobs_ = Buffer(device, memory_, "depth filter jobs", halfBlocks * sizeof(PixelJob));
-    binBlocks_ = Buffer(device, memory_, "half-blocks of high bins", halfBlocks * sizeof(BinBlock));
-    counters_ = Buffer(device, memory_, "lucid counters", sizeof(LucidCounters));
-    readback_ = Buffer(device, memory_, "lucid counters readback", sizeof(LucidCounters),
-                       BufferKind::readback);
+                                  .attributes = hasAttributes(scene.scene())});
+    programs_ = Programs(device, scene.scene(), scene.opaqueCount() > 0,
+                         formatName(target.format()), parameters);
+    buffers_ =
+        std::make_unique<Buffers>(device, memory_, std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS);
     makeRoomForParts();
-    makeRoomForLists(halfBlocks);
-    makeRoomForRepairs(1024);
   }
 
   bool finishesTarget() const override { return true; }
 
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
-    frontEnd_->record(frame, {&counters_, &binBlocks_});
+    frontEnd_->record(frame, {&buffers_->counters, &buffers_->binBlocks});
     const raster::RasterPush front = frontEnd_->addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
@@ -82,51 +54,51 @@ class Lucid : public Method {
     auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
       pipeline.bind(frame.commands, frame.bindings);
       pipeline.push(frame.commands, push);
-      frame.commands.dispatchIndirect(counters_.vk(), offset);
+      frame.commands.dispatchIndirect(buffers_->counters.vk(), offset);
     };
     // Within a step no barrier parts the programs: their half-blocks are different ones. Long lists
     // come first, since the last to end holds up the frame.
     const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
     frame.stage("sort", [&] {
-      if (needed_.longLists) indirect(sortHigh_, high);
-      if (needed_.filter) indirect(sortLow_, low);
+      if (needed_.longLists) indirect(programs_.sortHigh, high);
+      if (needed_.filter) indirect(programs_.sortLow, low);
     });
     frame.stage("low_raster", [&] {
-      if (ordersFirst()) indirect(ordered_, offsetof(LucidCounters, ordered));
+      if (programs_.ordersFirst) indirect(programs_.ordered, offsetof(LucidCounters, ordered));
       if (needed_.filter || needed_.longLists)
         frame.barrier(compute, compute | Stage::eDrawIndirect);
-      if (needed_.filter) indirect(lowRaster_, low);
+      if (needed_.filter) indirect(programs_.lowRaster, low);
     });
     frame.stage("high_raster", [&] {
-      if (needed_.longLists) indirect(highRaster_, high);
+      if (needed_.longLists) indirect(programs_.highRaster, high);
     });
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, front, push);
     });
     frame.barrier(compute, Stage::eTransfer);
     frontEnd_->recordReadback(frame);
-    frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
+    frame.commands.copyBuffer(buffers_->counters.vk(), buffers_->readback.vk(),
                               vk::BufferCopy(0, 0, sizeof(LucidCounters)));
     frame.barrier(Stage::eTransfer, Stage::eHost);
   }
 
   Status status() override {
-    const LucidCounters& c = readback_.mapped<LucidCounters>()[0];
+    const LucidCounters& c = buffers_->readback.mapped<LucidCounters>()[0];
     bool again = findNeeded(c);
     if (frontEnd_->grow()) {
       makeRoomForParts();
       return {.recordAgain = true};
     }
-    if (c.triHalfBlocks > listCapacity_) {
-      makeRoomForLists(withSlack(c.triHalfBlocks));
+    if (c.triHalfBlocks > buffers_->listCapacity) {
+      buffers_->makeRoomForLists(withSlack(c.triHalfBlocks));
       return {.recordAgain = true};
     }
-    if (c.repairJobs > repairCapacity_) {
-      makeRoomForRepairs(withSlack(c.repairJobs));
+    if (c.repairJobs > buffers_->repairCapacity) {
+      buffers_->makeRoomForRepairs(withSlack(c.repairJobs));
       again = true;
     }
-    if (c.deepPixels > deepCapacity_ || c.deepNodes > nodeCapacity_) {
-      makeRoomForDeep(withSlack(c.deepPixels), withSlack(c.deepNodes));
+    if (c.deepPixels > buffers_->deepCapacity || c.deepNodes > buffers_->nodeCapacity) {
+      buffers_->makeRoomForDeep(withSlack(c.deepPixels), withSlack(c.deepNodes));
       again = true;
     } else if (c.unfinished > 0) {
       deepRounds_ *= 2;
@@ -136,7 +108,7 @@ class Lucid : public Method {
     // A short subgroup goes through each list several times.
     const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
     const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
-    const bool blended = !verifiesLoops() || c.blended == toBlend;
+    const bool blended = !verifiesLoops(*device_) || c.blended == toBlend;
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
           "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
@@ -156,9 +128,7 @@ class Lucid : public Method {
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
-    status.counters["scratch_bytes"] = 0;
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partLists_})
-      status.counters["scratch_bytes"] += buffer->bytes();
+    status.counters["scratch_bytes"] = buffers_->scratchBytes();
     return status;
   }
 
@@ -180,84 +150,8 @@ class Lucid : public Method {
     return needed_ != before;
   }
 
-  // llvmpipe ends long loops early and in silence: there the turns are counted.
-  bool verifiesLoops() const { return device_->info().isCpu(); }
-
-  // Half-blocks that a workgroup of ordered and low raster works on side by side. They wait for
-  // each other, so that a GPU is fastest with 1 (docs/performance.md); a CPU has fewer groups to
-  // start.
-  const char* lowTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "1u"; }
-  const char* orderedTeams() const { return device_->info().subgroupSize < 32 ? "4u" : "2u"; }
-
-  // Whether short lists are first blended without the depth filter: quicker on a GPU, whose
-  // subgroups then take less room; on a CPU the pixels that are passed on cost more than is won.
-  bool ordersFirst() const {
-    const std::string& choice = parameters_.choice("ordered_first");
-    return choice == "auto" ? device_->info().subgroupSize >= 32 : choice == "on";
-  }
-
   bool repairs() const {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
-  }
-
-  void makePipelines(const std::string& format) {
-    const std::uint32_t lanes = device_->info().subgroupSize;
-    const Defines common = {
-        {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
-        {"TARGET_FORMAT", format},
-        {"HAS_OPAQUE", opaque_ ? "1" : "0"},
-        {"HAS_TEXTURES", textures_ ? "1" : "0"},
-        {"HAS_GRADIENTS", gradients_ ? "1" : "0"},
-        {"HAS_ATTRIBUTES", textures_ || colors_ ? "1" : "0"},
-        {"HAS_SMOOTH", smooth_ ? "1" : "0"},
-        {"HAS_THRESHOLD", parameters_.real("alpha_threshold") > 0.0 ? "1" : "0"},
-        {"UNIFORM_CONTROL_FLOW", device_->hasSubgroupUniformControlFlow() ? "1" : "0"},
-        {"VERIFY_LOOPS", verifiesLoops() ? "1" : "0"}};
-    auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
-      Defines defines = common;
-      defines["LOW_TEAMS"] = lowTeams();
-      defines["ORDERED"] = list == std::string("ORDERED_LIST") ? "1" : "0";
-      defines["HIGH"] = list == std::string("HIGH_LIST") ? "1" : "0";
-      defines["TEAMS"] = teams;
-      defines["LIST"] = list;
-      defines["DEPTH_FILTER"] = std::to_string(filter);
-      return Pipeline::compute(*device_, "lucid/blend.comp", defines, {}, lanes);
-    };
-    auto sort = [&](const char* list, const char* teams) {
-      return Pipeline::compute(*device_, "lucid/sort_lists.comp",
-                               {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")},
-                                {"UNIFORM_CONTROL_FLOW", common.at("UNIFORM_CONTROL_FLOW")},
-                                {"HIGH", list == std::string("HIGH_LIST") ? "1" : "0"},
-                                {"TEAMS", teams},
-                                {"LIST", list}},
-                               {}, lanes);
-    };
-    // A workgroup a part of a bin. On a CPU a large one is no faster.
-    const char* group = lanes >= 32 ? "256u" : "64u";
-    for (std::size_t pass = 0; pass < blocksPasses_.size(); ++pass)
-      blocksPasses_[pass] =
-          Pipeline::compute(*device_, "lucid/blocks.comp",
-                            {{"PASS", std::to_string(pass)},
-                             {"LOW_TEAMS", lowTeams()},
-                             {"ORDERED_TEAMS", orderedTeams()},
-                             {"GROUP", group},
-                             {"FIRST_LIST", ordersFirst() ? "ORDERED_LIST" : "0u"}});
-    const std::int64_t filter = parameters_.integer("depth_filter");
-    if (ordersFirst()) ordered_ = raster("ORDERED_LIST", orderedTeams(), 1);
-    lowRaster_ = raster("LOW_LIST", lowTeams(), filter);
-    highRaster_ = raster("HIGH_LIST", "1u", filter);
-    sortLow_ = sort("LOW_LIST", lowTeams());
-    sortHigh_ = sort("HIGH_LIST", "1u");
-    repair_ = Pipeline::compute(*device_, "lucid/repair.comp", common, {}, lanes);
-    deepCapture_ = Pipeline::compute(*device_, "lucid/deep_capture.comp",
-                                     {{"TARGET_FORMAT", format},
-                                      {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
-                                      {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
-                                      {"HAS_GRADIENTS", common.at("HAS_GRADIENTS")},
-                                      {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")},
-                                      {"HAS_SMOOTH", common.at("HAS_SMOOTH")}});
-    deepResolve_ =
-        Pipeline::compute(*device_, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", format}});
   }
 
   void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
@@ -265,23 +159,22 @@ class Lucid : public Method {
     const BlocksPush push{.triangles = front.triangles,
                           .irregular = front.irregular,
                           .shading = front.shading,
-                          .bins = front.bins,
                           .entries = front.entries,
                           .parts = front.parts,
                           .rasterCounters = front.counters,
-                          .list = list_.address(),
-                          .keys = keys_.address(),
-                          .blocks = blocks_.address(),
-                          .filterJobs = filterJobs_.address(),
-                          .binBlocks = binBlocks_.address(),
-                          .partLists = partLists_.address(),
-                          .counters = counters_.address(),
-                          .listCapacity = listCapacity_,
+                          .list = buffers_->list.address(),
+                          .keys = buffers_->keys.address(),
+                          .blocks = buffers_->blocks.address(),
+                          .filterJobs = buffers_->filterJobs.address(),
+                          .binBlocks = buffers_->binBlocks.address(),
+                          .partLists = buffers_->partLists.address(),
+                          .counters = buffers_->counters.address(),
+                          .listCapacity = buffers_->listCapacity,
                           .near = frame.camera.near,
                           .size = {frame.target.width(), frame.target.height()}};
     auto run = [&](int pass, std::size_t offset) {
-      blocksPasses_[std::size_t(pass)].bind(frame.commands, frame.bindings);
-      blocksPasses_[std::size_t(pass)].push(frame.commands, push);
+      programs_.blocks[std::size_t(pass)].bind(frame.commands, frame.bindings);
+      programs_.blocks[std::size_t(pass)].push(frame.commands, push);
       frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
     };
     if (needed_.highBins) run(1, offsetof(RasterCounters, high));
@@ -302,15 +195,15 @@ class Lucid : public Method {
             .irregular = front.irregular,
             .shading = front.shading,
             .attributes = front.attributes,
-            .list = list_.address(),
-            .keys = keys_.address(),
-            .blocks = blocks_.address(),
-            .filterJobs = filterJobs_.address(),
-            .repairs = repairs_.address(),
-            .counters = counters_.address(),
+            .list = buffers_->list.address(),
+            .keys = buffers_->keys.address(),
+            .blocks = buffers_->blocks.address(),
+            .filterJobs = buffers_->filterJobs.address(),
+            .repairs = buffers_->repairs.address(),
+            .counters = buffers_->counters.address(),
             .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
             .size = {frame.target.width(), frame.target.height()},
-            .repairCapacity = repairCapacity_,
+            .repairCapacity = buffers_->repairCapacity,
             .alphaThreshold = float(parameters_.real("alpha_threshold")),
             .flags = flags};
   }
@@ -326,11 +219,11 @@ class Lucid : public Method {
                     .list = lucid.list,
                     .repairs = lucid.repairs,
                     .counters = lucid.counters,
-                    .deepPixels = deepCapacity_ > 0 ? deepPixels_.address() : 0,
-                    .nodes = deepCapacity_ > 0 ? nodes_.address() : 0,
-                    .repairCapacity = repairCapacity_,
-                    .deepCapacity = deepCapacity_,
-                    .nodeCapacity = nodeCapacity_,
+                    .deepPixels = buffers_->deepCapacity > 0 ? buffers_->deepPixels.address() : 0,
+                    .nodes = buffers_->deepCapacity > 0 ? buffers_->nodes.address() : 0,
+                    .repairCapacity = buffers_->repairCapacity,
+                    .deepCapacity = buffers_->deepCapacity,
+                    .nodeCapacity = buffers_->nodeCapacity,
                     .alphaThreshold = lucid.alphaThreshold,
                     .flags = lucid.flags,
                     .round = 0,
@@ -338,74 +231,35 @@ class Lucid : public Method {
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
       pipeline.bind(frame.commands, frame.bindings);
       pipeline.push(frame.commands, push);
-      frame.commands.dispatchIndirect(counters_.vk(), offset);
+      frame.commands.dispatchIndirect(buffers_->counters.vk(), offset);
     };
     frame.barrier(compute, compute | Stage::eDrawIndirect);
-    run(repair_, offsetof(LucidCounters, repair));
-    if (deepCapacity_ == 0) return;  // no frame has needed it yet
+    run(programs_.repair, offsetof(LucidCounters, repair));
+    if (buffers_->deepCapacity == 0) return;  // no frame has needed it yet
     frame.barrier(compute, compute | Stage::eDrawIndirect);
-    run(deepCapture_, offsetof(LucidCounters, deep));
+    run(programs_.deepCapture, offsetof(LucidCounters, deep));
     for (push.round = 0; push.round < push.rounds; ++push.round) {
       frame.barrier(compute, compute);
-      run(deepResolve_, offsetof(LucidCounters, deepResolve));
+      run(programs_.deepResolve, offsetof(LucidCounters, deepResolve));
     }
   }
 
-  void makeRoomForParts() {
-    partLists_ = Buffer();
-    partLists_ = Buffer(*device_, memory_, "lists of parts",
-                        std::uint64_t(frontEnd_->partCapacity()) * sizeof(PartLists));
-  }
+  void makeRoomForParts() { buffers_->makeRoomForParts(frontEnd_->partCapacity()); }
 
-  void makeRoomForLists(std::uint64_t entries) {
-    if (entries > ~0u / 2)
-      fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
-    list_ = Buffer();  // give the old ones back first: both may not fit
-    keys_ = Buffer();
-    list_ = Buffer(*device_, memory_, "tri-half-blocks", 2 * entries * sizeof(TriHalfBlock));
-    keys_ = Buffer(*device_, memory_, "depth keys", entries * sizeof(std::uint32_t));
-    listCapacity_ = std::uint32_t(entries);
-  }
-
-  void makeRoomForRepairs(std::uint64_t jobs) {
-    repairs_ = Buffer();
-    repairs_ = Buffer(*device_, memory_, "repair jobs", jobs * sizeof(PixelJob));
-    repairCapacity_ = std::uint32_t(jobs);
-  }
-
-  void makeRoomForDeep(std::uint64_t pixels, std::uint64_t nodes) {
-    if (nodes >= LIST_END)
-      fail<DeviceError>("lucid: {} fragments in deep pixels are more than 32 bits can name", nodes);
-    deepPixels_ = Buffer();
-    nodes_ = Buffer();
-    deepPixels_ = Buffer(*device_, memory_, "deep pixels", pixels * sizeof(DeepPixel));
-    nodes_ = Buffer(*device_, memory_, "deep fragments", nodes * sizeof(Node));
-    deepCapacity_ = std::uint32_t(pixels);
-    nodeCapacity_ = std::uint32_t(nodes);
-  }
-
-  // Fills what a frame must write before it reads, for a test that it does.
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
     frontEnd_->poison(frame.commands, pattern);
-    for (const Buffer* buffer : {&list_, &keys_, &blocks_, &filterJobs_, &binBlocks_, &partLists_,
-                                 &repairs_, &counters_, &deepPixels_, &nodes_})
-      if (*buffer) fillBuffer(frame.commands, *buffer, pattern);
+    buffers_->poison(frame.commands, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
 
   const Device* device_ = nullptr;
-  bool opaque_ = false, textures_ = false, colors_ = false, gradients_ = false, smooth_ = false;
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
-  std::uint32_t listCapacity_ = 0, repairCapacity_ = 0, deepCapacity_ = 0, nodeCapacity_ = 0;
-  std::uint32_t deepRounds_ = 1;
+  std::unique_ptr<Buffers> buffers_;
+  Programs programs_;
   Needed needed_;
-  std::array<Pipeline, 3> blocksPasses_;
-  Pipeline ordered_, sortLow_, sortHigh_, lowRaster_, highRaster_, repair_, deepCapture_,
-      deepResolve_;
-  Buffer list_, keys_, blocks_, filterJobs_, binBlocks_, partLists_, repairs_, counters_, readback_,
-      deepPixels_, nodes_;
+  std::uint32_t deepRounds_ = 1;
 };
 
 const RegisterMethod registered({

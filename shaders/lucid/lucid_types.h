@@ -111,7 +111,6 @@ struct BlocksPush {
   ADDRESS_OF(RasterTriangleBuffer) triangles;
   ADDRESS_OF(IrregularBuffer) irregular;
   ADDRESS_OF(ShadeTriangleBuffer) shading;
-  ADDRESS_OF(BinBuffer) bins;
   ADDRESS_OF(WordBuffer) entries;
   ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;

@@ -1,0 +1,69 @@
+#include "lucid/buffers.h"
+
+#include "common/lists.h"
+#include "lucid/lucid_types.h"
+#include "util/error.h"
+
+namespace oitlab::lucid {
+
+Buffers::Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfBlocks)
+    : blocks(device, memory, "half-blocks", halfBlocks * sizeof(HalfBlock)),
+      filterJobs(device, memory, "depth filter jobs", halfBlocks * sizeof(PixelJob)),
+      binBlocks(device, memory, "half-blocks of high bins", halfBlocks * sizeof(BinBlock)),
+      counters(device, memory, "lucid counters", sizeof(LucidCounters)),
+      readback(device, memory, "lucid counters readback", sizeof(LucidCounters),
+               BufferKind::readback),
+      device_(device),
+      memory_(memory) {
+  // First guesses; the first frame tells.
+  makeRoomForLists(halfBlocks);
+  makeRoomForRepairs(1024);
+}
+
+void Buffers::makeRoomForParts(std::uint64_t parts) {
+  partLists = Buffer();
+  partLists = Buffer(device_, memory_, "lists of parts", parts * sizeof(PartLists));
+}
+
+void Buffers::makeRoomForLists(std::uint64_t entries) {
+  if (entries > ~0u / 2)
+    fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
+  list = Buffer();  // give the old ones back first: both may not fit
+  keys = Buffer();
+  list = Buffer(device_, memory_, "tri-half-blocks", 2 * entries * sizeof(TriHalfBlock));
+  keys = Buffer(device_, memory_, "depth keys", entries * sizeof(std::uint32_t));
+  listCapacity = std::uint32_t(entries);
+}
+
+void Buffers::makeRoomForRepairs(std::uint64_t jobs) {
+  repairs = Buffer();
+  repairs = Buffer(device_, memory_, "repair jobs", jobs * sizeof(PixelJob));
+  repairCapacity = std::uint32_t(jobs);
+}
+
+void Buffers::makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments) {
+  if (fragments >= LIST_END)
+    fail<DeviceError>("lucid: {} fragments in deep pixels are more than 32 bits can name",
+                      fragments);
+  deepPixels = Buffer();
+  nodes = Buffer();
+  deepPixels = Buffer(device_, memory_, "deep pixels", pixels * sizeof(DeepPixel));
+  nodes = Buffer(device_, memory_, "deep fragments", fragments * sizeof(Node));
+  deepCapacity = std::uint32_t(pixels);
+  nodeCapacity = std::uint32_t(fragments);
+}
+
+std::uint64_t Buffers::scratchBytes() const {
+  std::uint64_t bytes = 0;
+  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &partLists})
+    bytes += buffer->bytes();
+  return bytes;
+}
+
+void Buffers::poison(const Commands& commands, std::uint32_t pattern) const {
+  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &partLists, &repairs,
+                               &counters, &deepPixels, &nodes})
+    if (*buffer) fillBuffer(commands, *buffer, pattern);
+}
+
+}  // namespace oitlab::lucid

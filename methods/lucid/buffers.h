@@ -1,0 +1,34 @@
+#pragma once
+
+#include "gpu/buffer.h"
+
+namespace oitlab::lucid {
+
+/// What LucidRaster keeps between its steps, beside the front end's. Buffers grow by what a frame
+/// counted: each makeRoom...() gives the old contents up. Throws DeviceError when memory is short,
+/// or when 32 bits cannot name as many.
+struct Buffers {
+  /// `memory` must outlive this and lists the buffers. `halfBlocks`: of the frame.
+  Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfBlocks);
+
+  void makeRoomForParts(std::uint64_t parts);
+  void makeRoomForLists(std::uint64_t triHalfBlocks);
+  void makeRoomForRepairs(std::uint64_t jobs);
+  void makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments);
+
+  /// Of the lists and what is made on the way to them.
+  std::uint64_t scratchBytes() const;
+
+  /// Fills everything that a frame must write before it reads, for a test that it does.
+  void poison(const Commands& commands, std::uint32_t pattern) const;
+
+  Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs, counters, readback;
+  Buffer deepPixels, nodes;
+  std::uint32_t listCapacity = 0, repairCapacity = 0, deepCapacity = 0, nodeCapacity = 0;
+
+ private:
+  const Device& device_;
+  MemoryLedger& memory_;
+};
+
+}  // namespace oitlab::lucid
