@@ -10,13 +10,11 @@
 // makes room for all. PASS 2: writes these, from what PASS 1 kept.
 #include "lucid/lucid_types.h"
 #include "lucid/sort_key.glsl"
-#include "raster/coverage.glsl"
-#include "raster/records.glsl"
-
-#extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
+
+#include "lucid/strips.glsl"
 
 // What of a part fits is kept from counting to writing; what does not is rasterized again. Parts have
 // some 360 in a hairball, more in others: more room would serve a few, and cost all of them the shared
@@ -27,30 +25,10 @@ shared uint keptPlaces[KEPT];  // half-block, triangle of the part, place in the
 #define TRIANGLE_SHIFT 5  // above the half-block: PART_TRIANGLES
 #define PLACE_SHIFT 13
 
-// The part's triangles, in the order of the group's subgroups: their slots, and the strips that they
-// reach, before each of them and which is the first.
-#define RUN ((PART_TRIANGLES + GROUP - 1u) / GROUP)  // triangles of an invocation
-shared uint slots[PART_TRIANGLES], begins[PART_TRIANGLES];
-#define FIRST_STRIP_BITS 3
-shared uint stripSums[GROUP];  // of a subgroup each
-shared uint strips;
-
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
 shared uint kept, keptFirst, base, total;
 shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh;
 shared uint last;
-
-struct Span {
-  Part part;
-  ivec2 region;      // the bin's first pixel
-  ivec2 extent;      // pixels of it that are on the screen
-  uint first, count; // triangles of the bin's list
-};
-
-uint slotOf(Part part, uint i) {
-  if (i < 2u * part.quads) return 2u * push.entries.at[part.first + i / 2u] + i % 2u;
-  return push.entries.at[part.first + i - part.quads];
-}
 
 ivec2 cornerIn(ivec2 region, uint block) {
   return region + ivec2(block % HALF_BLOCKS_ACROSS * HALF_BLOCK_WIDTH,
@@ -61,52 +39,6 @@ void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
   push.keys.at[starts[block] + place] =
       sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
-}
-
-// First strip that the triangle reaches in the bin, and how many.
-uvec2 stripsOf(Span span, uint slot) {
-  const RasterTriangle t = loadTriangle(push.triangles, slot);
-  if (t.flags == 0u) return uvec2(0u);
-  ivec4 box = ivec4(ivec2(0), span.extent - 1);
-  if ((t.flags & TRIANGLE_IRREGULAR) == 0u) {
-    const ivec4 own = snappedBox(t.v01.xy, t.v01.zw, t.v2) - span.region.xyxy;
-    box = ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
-  }
-  if (isEmpty(box)) return uvec2(0u);
-  return uvec2(uint(box.y) / HALF_BLOCK_HEIGHT, uint(box.w) / HALF_BLOCK_HEIGHT - uint(box.y) / HALF_BLOCK_HEIGHT + 1u);
-}
-
-// Fills `slots` and, if there is to be a walk, `begins` and `strips`. All invocations take part.
-void findStrips(Span span, bool walks) {
-  const uint self = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
-  uvec2 reached[RUN];
-  uint own = 0u;
-  [[unroll]] for (uint r = 0u; r < RUN; ++r) {
-    const uint number = self * RUN + r;
-    reached[r] = uvec2(0u);
-    if (number < span.count) {
-      const uint slot = slotOf(span.part, span.first + number);
-      slots[number] = slot;
-      if (walks) reached[r] = stripsOf(span, slot);
-    }
-    own += reached[r].y;
-  }
-  const uint sum = subgroupAdd(own);
-  uint before = subgroupExclusiveAdd(own);
-  if (subgroupElect()) stripSums[gl_SubgroupID] = sum;
-  barrier();
-  for (uint s = 0u; s < gl_SubgroupID; ++s) before += stripSums[s];
-  [[unroll]] for (uint r = 0u; r < RUN; ++r) {
-    const uint number = self * RUN + r;
-    if (number < PART_TRIANGLES) begins[number] = before << FIRST_STRIP_BITS | reached[r].x;
-    before += reached[r].y;
-  }
-  if (gl_SubgroupID == gl_NumSubgroups - 1u && subgroupElect()) {
-    uint all = 0u;
-    for (uint s = 0u; s < gl_NumSubgroups; ++s) all += stripSums[s];
-    strips = all;
-  }
-  barrier();
 }
 
 // `number`: of the triangle in its part.
@@ -131,34 +63,6 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
     ++k;
 #endif
   }
-}
-
-// Coverage of a strip's half-blocks: a byte of each row is one of each mask.
-uvec4 coverStrip(RasterTriangle t, Span span, int strip, uint slot) {
-  const uint onScreen = bitsBetween(0, span.extent.x - 1);
-  uvec4 rows;
-  if ((t.flags & TRIANGLE_IRREGULAR) != 0u) {
-    [[dont_unroll]] for (int row = 0; row < 4; ++row)
-      rows[row] = irregularRow(push.triangles, push.irregular, push.shading, slot, t.flags, push.near,
-                               span.region, 4 * strip + row);
-  } else {
-    const RegionEdges edges = regionEdges(t, span.region);
-    [[unroll]] for (int row = 0; row < 4; ++row) rows[row] = rowCoverage(edges, 4 * strip + row);
-  }
-  uvec4 masks = uvec4(0u);
-  [[unroll]] for (int row = 0; row < 4; ++row) {
-    const uint covered = 4 * strip + row < span.extent.y ? rows[row] & onScreen : 0u;
-    masks |= ((uvec4(covered) >> uvec4(0u, 8u, 16u, 24u)) & 0xffu) << (8 * row);
-  }
-  return masks;
-}
-
-// Which of the part's triangles has the strip: the last that begins no later.
-uint triangleOf(uint item) {
-  uint number = 0u;
-  [[unroll]] for (uint step = PART_TRIANGLES / 2u; step > 0u; step /= 2u)
-    if (begins[number + step] >> FIRST_STRIP_BITS <= item) number += step;
-  return number;
 }
 
 // Strips are shared out evenly, however tall the triangles: lanes of a subgroup wait for each other.
