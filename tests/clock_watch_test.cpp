@@ -68,6 +68,16 @@ TEST(ClockWatch, ADeviceThatIdledIsUnderLoadUntilItsClockIsFullAgain) {
   EXPECT_LT(seconds, 0.1);
 }
 
+TEST(ClockWatch, AfterIdlingAClockThatLooksFullIsNotBelievedAtOnce) {
+  // It notices late that it idled.
+  MadeUpDevice device{
+      [](double, double loaded) { return loaded < 0.01 || loaded > 0.04 ? 1.0 : 0.2; }};
+  device.settle();
+  device.idle(0.1);
+  EXPECT_GE(device.settle().second, 0.05);
+  EXPECT_TRUE(device.watch.held());
+}
+
 TEST(ClockWatch, ADeviceThatDidNotIdleIsNotHeldUp) {
   MadeUpDevice device{governed};
   device.settle();

@@ -40,7 +40,9 @@ struct MadeUpClock {
                    [this] { return now; }};
 };
 
-/// Draws nothing, and tells in which block it is drawn (-1 before the first).
+constexpr int stages = -1;
+
+/// Draws nothing, and tells at whose end it is: of which block, or of a frame with stages.
 class BlockTeller : public Method {
  public:
   explicit BlockTeller(std::function<void(int block)> tell) : tell_(std::move(tell)) {}
@@ -50,7 +52,9 @@ class BlockTeller : public Method {
     if (!frame.instrumented && ++frames_ > framesBefore &&
         (frames_ - framesBefore) % framesOfBlock == 0)
       tell_((frames_ - framesBefore) / framesOfBlock - 1);
-    if (frame.instrumented) frame.stage("nothing", [] {});
+    if (!frame.instrumented) return;
+    frame.stage("nothing", [] {});
+    tell_(stages);
   }
   Status status() override { return {}; }
 
@@ -61,11 +65,12 @@ class BlockTeller : public Method {
 
 class Measuring : public GpuTest {
  protected:
-  Measurement measure(const std::function<void(int block)>& tell, ClockWatch* clock) {
+  Measurement measure(const std::function<void(int block)>& tell, ClockWatch* clock,
+                      const MeasureSettings& settings = smallSettings()) {
     RenderFixture fixture(randomSoup(1, 4), 32, 32);
     BlockTeller method(tell);
     std::vector<Measurement> done;
-    measureInterleaved(fixture.renderer(), fixture.defaultView(), {&method}, smallSettings(), clock,
+    measureInterleaved(fixture.renderer(), fixture.defaultView(), {&method}, settings, clock,
                        [&](std::size_t, Measurement m) { done.push_back(std::move(m)); });
     EXPECT_EQ(done.size(), 1u);
     return done.empty() ? Measurement() : std::move(done.front());
@@ -116,6 +121,20 @@ TEST_F(Measuring, BlocksInWhichTheClockFellAreRejectedAndTheCellEnds) {
   EXPECT_TRUE(m.clock->settled);
 }
 
+TEST_F(Measuring, RejectedBlocksDoNotMakeACellStopEarly) {
+  MeasureSettings settings = smallSettings();
+  settings.stop.relativeSpread = 1e9;  // as soon as there are enough blocks
+  settings.stop.minBlocks = 3;
+  MadeUpClock clock;
+  const Measurement m = measure(
+      [&](int block) {
+        if (block == 0 || block == 2) clock.slowProbes = 3;
+      },
+      &clock.watch, settings);
+  EXPECT_THAT(blocksOf(m.frame), ElementsAre(1, 3, 4));
+  EXPECT_EQ(m.stopReason, "spread");
+}
+
 TEST_F(Measuring, BlocksOfAThrottledDeviceAreKeptAndCounted) {
   MadeUpClock clock;
   const Measurement m = measure(
@@ -130,6 +149,18 @@ TEST_F(Measuring, BlocksOfAThrottledDeviceAreKeptAndCounted) {
   EXPECT_FALSE(m.clock->settled);
   EXPECT_EQ(m.clock->bestMs, 1);
   EXPECT_EQ(m.clock->medianMs, 1.2);
+}
+
+TEST_F(Measuring, AClockThatFallsDuringTheStagesIsTold) {
+  MadeUpClock clock;
+  const Measurement m = measure(
+      [&](int block) {
+        if (block == stages) clock.slowProbes = 3;
+      },
+      &clock.watch);
+  ASSERT_TRUE(m.clock);
+  EXPECT_EQ(m.clock->rejectedBlocks + m.clock->unsettledBlocks, 0u);
+  EXPECT_FALSE(m.clock->settled);
 }
 
 TEST_F(Measuring, ACellOfWhichAllBlocksAreRejectedFailsWithTheReason) {
