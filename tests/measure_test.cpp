@@ -48,13 +48,14 @@ class BlockTeller : public Method {
   explicit BlockTeller(std::function<void(int block)> tell) : tell_(std::move(tell)) {}
   void prepare(const Device&, const GpuScene&, const Target&, const Parameters&) override {}
   void record(const Frame& frame) override {
+    if (frame.instrumented) {
+      frame.stage("nothing", [] {});
+      tell_(stages);
+      return;
+    }
     // The last frame of the block: after it, the clock is probed.
-    if (!frame.instrumented && ++frames_ > framesBefore &&
-        (frames_ - framesBefore) % framesOfBlock == 0)
-      tell_((frames_ - framesBefore) / framesOfBlock - 1);
-    if (!frame.instrumented) return;
-    frame.stage("nothing", [] {});
-    tell_(stages);
+    const int measured = ++frames_ - framesBefore;
+    if (measured > 0 && measured % framesOfBlock == 0) tell_(measured / framesOfBlock - 1);
   }
   Status status() override { return {}; }
 
