@@ -6,6 +6,7 @@
 #include "experiment/describe.h"
 #include "experiment/last_scene.h"
 #include "image/hash.h"
+#include "measure/clock_probe.h"
 #include "quality/compare.h"
 #include "util/error.h"
 #include "util/json_file.h"
@@ -44,7 +45,12 @@ class Run {
         experiment_(experiment),
         results_(std::move(results)),
         progress_(progress),
-        scene_(device) {}
+        scene_(device) {
+    if (device.info().isCpu()) return;
+    probe_.emplace(device);
+    probe_->fit();
+    clock_.emplace([this] { return probe_->run(); });
+  }
 
   void measureGroup(const std::vector<CellSpec>& cells);
 
@@ -66,6 +72,10 @@ class Run {
   fs::path results_;
   Progress& progress_;
   LastScene scene_;
+  // One for all groups, which share what is known of the clock. A CPU's is not the program's to
+  // see: its threads compete with all others.
+  std::optional<ClockProbe> probe_;
+  std::optional<ClockWatch> clock_;
   std::map<std::string, Judged> judged_;  // by hash, of the group that is being measured
   const std::string runId_ =
       fmt::format("{} {}", getpid(), std::chrono::system_clock::now().time_since_epoch().count());
@@ -142,6 +152,12 @@ void Run::writeMeasured(const CellSpec& cell, const Renderer& renderer, const Me
                      {"blocks", m.blocks},
                      {"seconds", m.seconds},
                      {"rejected_samples", m.rejectedSamples}};
+  if (m.clock)
+    content["clock"] = {{"probe_ms_best", m.clock->bestMs},
+                        {"probe_ms_median", m.clock->medianMs},
+                        {"rejected_blocks", m.clock->rejectedBlocks},
+                        {"unsettled_blocks", m.clock->unsettledBlocks},
+                        {"settled", m.clock->settled}};
   content["counters"] = m.counters;
   content["memory_bytes"] = describeMemory(renderer, method);
 
@@ -208,13 +224,14 @@ void Run::measureOn(const std::vector<CellSpec>& cells) {
       writeUnmeasured(cell, "failed", error.what());
     }
   }
-  measureInterleaved(
-      renderer, camera, prepared, experiment_.measure, [&](std::size_t i, Measurement measurement) {
-        if (!measurement.failure.empty())
-          writeUnmeasured(ready[i], "failed", measurement.failure);
-        else
-          writeMeasured(ready[i], renderer, *prepared[i], camera, measurement, reference);
-      });
+  measureInterleaved(renderer, camera, prepared, experiment_.measure, clock_ ? &*clock_ : nullptr,
+                     [&](std::size_t i, Measurement measurement) {
+                       if (!measurement.failure.empty())
+                         writeUnmeasured(ready[i], "failed", measurement.failure);
+                       else
+                         writeMeasured(ready[i], renderer, *prepared[i], camera, measurement,
+                                       reference);
+                     });
 }
 
 void Run::measureGroup(const std::vector<CellSpec>& cells) {

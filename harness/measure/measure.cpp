@@ -12,10 +12,26 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What all subjects share.
+struct Bench {
+  Renderer& renderer;
+  const Camera& camera;
+  const MeasureSettings& settings;
+  ClockWatch* clock;
+
+  FrameResult render(Method& method, bool instrumented = false) const {
+    return renderer.render(method, camera, instrumented);
+  }
+  double settle() const { return clock ? clock->settle() : 0; }
+  bool held() const { return !clock || clock->held(); }
+};
+
 struct Subject {
   Method* method = nullptr;
   StopRule rule;
   Measurement result;
+  std::vector<double> clockLevels;  ///< before each block that was kept
+  std::uint32_t rejectedBlocks = 0;
   int warmupFrames = 1;
   int blockFrames = 1;
   bool finished = false;
@@ -23,29 +39,35 @@ struct Subject {
 
 /// The first frames grow memory and compile what drivers compile late; the last of them tells how
 /// many frames make a block.
-void prepareSubject(Renderer& renderer, const Camera& camera, const MeasureSettings& settings,
-                    Subject& subject) {
-  renderer.render(*subject.method, camera);
-  const double ms = renderer.render(*subject.method, camera).frameMs.value_or(1.0);
-  const double frames = settings.blockSeconds * 1000.0 / std::max(ms, 1e-3);
+void prepareSubject(const Bench& bench, Subject& subject) {
+  bench.render(*subject.method);
+  bench.settle();
+  const double ms = bench.render(*subject.method).frameMs.value_or(1.0);
+  const double frames = bench.settings.blockSeconds * 1000.0 / std::max(ms, 1e-3);
   subject.blockFrames =
-      int(std::clamp(frames, double(settings.minFrames), double(settings.maxFrames)));
+      int(std::clamp(frames, double(bench.settings.minFrames), double(bench.settings.maxFrames)));
   subject.warmupFrames = 1 + subject.blockFrames / 10;
 }
 
-void measureBlock(Renderer& renderer, const Camera& camera, Subject& subject) {
+void measureBlock(const Bench& bench, Subject& subject) {
   const auto start = Clock::now();
   Measurement& result = subject.result;
-  for (int i = 0; i < subject.warmupFrames; ++i) renderer.render(*subject.method, camera);
+  const double level = bench.settle();
+  for (int i = 0; i < subject.warmupFrames; ++i) bench.render(*subject.method);
   std::vector<double> block;
   for (int i = 0; i < subject.blockFrames; ++i) {
-    const FrameResult frame = renderer.render(*subject.method, camera);
-    if (!frame.frameMs || frame.recordings > 1) {
+    const FrameResult frame = bench.render(*subject.method);
+    if (!frame.frameMs || frame.recordings > 1)
       ++result.rejectedSamples;
-      continue;
-    }
-    block.push_back(*frame.frameMs);
-    result.frame.add(*frame.frameMs, result.blocks);
+    else
+      block.push_back(*frame.frameMs);
+  }
+  if (bench.held()) {
+    for (const double ms : block) result.frame.add(ms, result.blocks);
+    if (!block.empty()) subject.clockLevels.push_back(level);
+  } else {
+    ++subject.rejectedBlocks;
+    block.clear();
   }
   const double seconds = secondsSince(start);
   result.seconds += seconds;
@@ -58,32 +80,72 @@ void measureBlock(Renderer& renderer, const Camera& camera, Subject& subject) {
   subject.rule.addBlock(quantileOfSorted(block, 0.5), seconds);
 }
 
-/// The image of the timed configuration, then the labelled run of its stages.
-void finishSubject(Renderer& renderer, const Camera& camera, const MeasureSettings& settings,
-                   Subject& subject) {
+/// The labelled run of the stages. Whether all of it was at full clock.
+bool measureStages(const Bench& bench, Subject& subject) {
   Measurement& result = subject.result;
-  if (result.frame.ms.empty()) throw DeviceError("the device gave no usable timestamps");
-  result.stopReason = subject.rule.stopReason();
-  result.relativeSpread = subject.rule.relativeSpread();
-  renderer.render(*subject.method, camera);
-  result.image = renderer.target().readBytes(renderer.device());
+  const MeasureSettings& settings = bench.settings;
+  std::vector<double> levels = {bench.settle()};
   const auto start = Clock::now();
+  auto settledAt = start;
+  bool held = true;
   for (int i = 0; i < settings.stageFrames; ++i) {
-    const FrameResult frame = renderer.render(*subject.method, camera, true);
+    const FrameResult frame = bench.render(*subject.method, true);
     result.counters = frame.counters;
     if (result.stageOrder.empty())
       for (const auto& [name, ms] : frame.stageMs) result.stageOrder.push_back(name);
     for (const auto& [name, ms] : frame.stageMs) result.stages[name].add(ms, 0);
     // Stages explain the headline and are not it: on a slow device a few frames will do.
     if (secondsSince(start) > 0.25 * settings.stop.timeLimitSeconds && i >= 2) break;
+    if (secondsSince(settledAt) > settings.blockSeconds) {
+      held = bench.held() && held;
+      levels.push_back(bench.settle());
+      settledAt = Clock::now();
+    }
   }
+  held = bench.held() && held;
+  return held && std::all_of(levels.begin(), levels.end(), [&](double level) {
+           return !bench.clock || bench.clock->isFull(level);
+         });
+}
+
+/// Judged at the end: by then the best is better known than it was at the first block.
+ClockRecord describeClock(const ClockWatch& clock, const Subject& subject, bool stagesSettled) {
+  ClockRecord record;
+  std::vector<double> levels = subject.clockLevels;
+  std::sort(levels.begin(), levels.end());
+  record.bestMs = clock.bestMs();
+  record.medianMs = quantileOfSorted(levels, 0.5);
+  record.rejectedBlocks = subject.rejectedBlocks;
+  record.unsettledBlocks = std::uint32_t(
+      std::count_if(levels.begin(), levels.end(), [&](double ms) { return !clock.isFull(ms); }));
+  record.settled = stagesSettled && record.unsettledBlocks == 0;
+  return record;
+}
+
+/// The image of the timed configuration, then its stages.
+void finishSubject(const Bench& bench, Subject& subject) {
+  Measurement& result = subject.result;
+  if (result.frame.ms.empty() && subject.rejectedBlocks > 0)
+    fail<DeviceError>(
+        "the device's clock changed by more than {:.0f}% in each of {} blocks; lock it (NVIDIA: "
+        "nvidia-smi --lock-gpu-clocks), keep other programs off the device, or raise time_limit",
+        100 * bench.clock->limits().blockTolerance, subject.rejectedBlocks);
+  if (result.frame.ms.empty()) throw DeviceError("the device gave no usable timestamps");
+  result.stopReason = subject.rule.stopReason();
+  result.relativeSpread = subject.rule.relativeSpread();
+  bench.render(*subject.method);
+  result.image = bench.renderer.target().readBytes(bench.renderer.device());
+  const bool stagesSettled = measureStages(bench, subject);
+  if (bench.clock) result.clock = describeClock(*bench.clock, subject, stagesSettled);
 }
 
 }  // namespace
 
 void measureInterleaved(Renderer& renderer, const Camera& camera,
                         const std::vector<Method*>& methods, const MeasureSettings& settings,
+                        ClockWatch* clock,
                         const std::function<void(std::size_t, Measurement)>& done) {
+  const Bench bench{renderer, camera, settings, clock};
   std::vector<Subject> subjects;
   for (Method* method : methods) subjects.push_back({method, StopRule(settings.stop), {}});
   Pcg32 random(settings.seed);
@@ -99,7 +161,7 @@ void measureInterleaved(Renderer& renderer, const Camera& camera,
     if (subject.finished) done(i, std::move(subject.result));
   };
   for (std::size_t i = 0; i < subjects.size(); ++i)
-    guarded(i, [&](Subject& subject) { prepareSubject(renderer, camera, settings, subject); });
+    guarded(i, [&](Subject& subject) { prepareSubject(bench, subject); });
 
   for (;;) {
     std::vector<std::size_t> turn;
@@ -109,9 +171,9 @@ void measureInterleaved(Renderer& renderer, const Camera& camera,
     for (std::size_t i = turn.size(); i > 1; --i) std::swap(turn[i - 1], turn[random.next() % i]);
     for (const std::size_t i : turn)
       guarded(i, [&](Subject& subject) {
-        measureBlock(renderer, camera, subject);
+        measureBlock(bench, subject);
         if (subject.rule.stopReason().empty()) return;
-        finishSubject(renderer, camera, settings, subject);
+        finishSubject(bench, subject);
         subject.finished = true;
       });
   }

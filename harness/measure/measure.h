@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "measure/clock_watch.h"
 #include "measure/statistics.h"
 #include "render/renderer.h"
 
@@ -29,6 +30,16 @@ struct Series {
   }
 };
 
+/// How high the device's clock was while a configuration was measured, by the times of the probe
+/// (measure/clock_watch.h), in milliseconds.
+struct ClockRecord {
+  double bestMs = 0;                 ///< the shortest level so far, of the whole run of the program
+  double medianMs = 0;               ///< of the levels before the blocks that were kept
+  std::uint32_t rejectedBlocks = 0;  ///< the clock moved while they were measured: not in `frame`
+  std::uint32_t unsettledBlocks = 0;  ///< kept, and the clock was steady, but not the full one
+  bool settled = false;               ///< all kept blocks and the stages were at full clock
+};
+
 /// Everything that was measured of one configuration.
 struct Measurement {
   Series frame;                          ///< uninstrumented frames: the headline
@@ -38,9 +49,10 @@ struct Measurement {
   std::vector<std::byte> image;  ///< the last timed frame, as the target stores it
   std::string stopReason;
   double relativeSpread = 0;
-  double seconds = 0;  ///< wall-clock time spent on this cell
-  std::uint32_t blocks = 0;
+  double seconds = 0;                 ///< wall-clock time spent on this cell
+  std::uint32_t blocks = 0;           ///< rejected ones included
   std::uint64_t rejectedSamples = 0;  ///< unusable timestamps, or frames recorded more than once
+  std::optional<ClockRecord> clock;   ///< empty without a ClockWatch
   std::string failure;                ///< not empty: it failed on the way, for this reason
 };
 
@@ -48,8 +60,13 @@ struct Measurement {
 /// wants samples has its turn, in random order, each with its own warm-up, so that a clock that
 /// drifts does so for all. `done(i)` is called once for each method as soon as it is finished.
 /// A method that fails leaves a Measurement with `failure`; the others go on.
+///
+/// With a `clock` each block begins at full clock; one at whose end the clock is another is
+/// rejected, and counts towards the limits only. Without (null: CPU devices) nothing is known of
+/// it.
 void measureInterleaved(Renderer& renderer, const Camera& camera,
                         const std::vector<Method*>& methods, const MeasureSettings& settings,
+                        ClockWatch* clock,
                         const std::function<void(std::size_t, Measurement)>& done);
 
 }  // namespace oitlab
