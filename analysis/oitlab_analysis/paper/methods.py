@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 
 from .agreement import factor, order
-from .common import (build, columns, file_name, general_notes, head, pairs_of, published,
+from .common import (build, clock_notes, columns, file_name, general_notes, head, pairs_of, published,
                      without_ratios)
 from .lucidraster import LUCID
 from .measured import Context, Measurements, Want, find, ratio
@@ -69,7 +69,7 @@ def opening(found: Measurements, device: str) -> Table:
     if context:
         agreement = [s for s in (order("Relative time", pairs_of(rows, "relative")),
                                  factor("Relative time", pairs_of(rows, "relative"))) if s]
-        notes = general_notes(context, used, others, "2560x1330")
+        notes = clock_notes(used) + general_notes(context, used, others, "2560x1330")
         counts = {row["m.scenes"] for row in rows if row.get("m.scenes")}
         if len(counts) > 1:
             notes.insert(0, "The means are over different numbers of scenes: compare rows with equal numbers only.")
