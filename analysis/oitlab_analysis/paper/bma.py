@@ -75,15 +75,15 @@ def table2(found: Measurements, device: str) -> Table:
 def cells_of(found: Measurements, device: str, method: str) -> tuple[Context | None, pandas.DataFrame | None]:
     """The context with most measured cells of a method, and their table: of the experiment that is
     made for it where there is one, since the same cell may have been measured in others too."""
-    def cells(context: Context) -> list[dict]:
-        own = [c for c in context.cells if c["experiment"] == "bma"]
-        return own or context.cells
-
     def count(context: Context) -> int:
-        return sum(c["method"] == method and c["status"] == "ok" for c in cells(context))
+        return sum(c["method"] == method and c["status"] == "ok" for c in own_cells(context))
 
     context = choose(found.of(device), count)
-    return (context, as_table({c["id"]: c for c in cells(context)})) if context else (None, None)
+    return (context, as_table({c["id"]: c for c in own_cells(context)})) if context else (None, None)
+
+
+def own_cells(context: Context) -> list[dict]:
+    return [c for c in context.cells if c["experiment"] == "bma"] or context.cells
 
 
 def table1(found: Measurements, device: str) -> Table:
@@ -98,18 +98,31 @@ def table1(found: Measurements, device: str) -> Table:
                      "m.speedup": Number(value) if value is not None else None})
     agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
                              factor("Speed-up", pairs_of(rows, "speedup"))) if s]
+    shallow = [row["scene"] for row, line in zip(rows, paper)
+               if is_shallow(cells, STAND_INS[line["scene"]], int(line["interval"]))]
+    absent = [f"No pixel of the stand-in has so many fragments: {'; '.join(shallow)}."] if shallow else []
     notes = []
     if context:
-        staged = [c for c in context.cells if c["status"] == "ok" and c["method"] == "abuffer"]
-        notes = clock_notes([], staged) + without_ratios(general_notes(context, [], 0, "1680x1050"))
+        staged = [c for c in own_cells(context) if c["status"] == "ok" and c["method"] == "abuffer"]
+        notes = absent + clock_notes([], staged) + without_ratios(general_notes(context, [], 0, "1680x1050"))
     return Table(
         name=f"bma-table1-{file_name(device)}", title="BMA: estimated speed-up at each interval",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
         columns=[Column("scene", "scene, interval")] + columns([("speedup", "speed-up")], paper[0]["device"], device),
         rows=rows, measured_on=context.describe() if context else "nothing yet", agreement=agreement,
         notes=notes,
-        missing=[row["scene"] for row in rows if not row.get("m.speedup")], command=COMMAND,
+        missing=[row["scene"] for row in rows if not row.get("m.speedup") and row["scene"] not in shallow],
+        command=COMMAND,
     )
+
+
+def is_shallow(cells: pandas.DataFrame | None, scene: str, interval: int) -> bool:
+    """Whether the stand-in was measured, and no view of it but those of a path has a pixel in the interval."""
+    name = f"counter.pixels_{interval}"
+    if cells is None or name not in cells:
+        return False
+    counts = cells[(cells["scene"] == scene) & ~cells["view"].str.startswith("path:")][name].dropna()
+    return not counts.empty and counts.max() == 0
 
 
 def speedup_in(measured: pandas.DataFrame | None, scene: str, interval: int) -> float | None:

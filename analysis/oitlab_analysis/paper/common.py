@@ -51,7 +51,7 @@ def stages_us(cell: dict, stages: tuple[str, ...]) -> dict[str, Number | str]:
 def clock_notes(timed: list[dict], staged: list[dict] = ()) -> list[str]:
     """What is said of times taken at a lower clock: of frames, and of stages."""
     timed = list({id(cell): cell for cell in timed}.values())  # a base may serve many rows
-    return [f"{SLOW.strip()} {note}" for note in (clock.frame_note(timed), clock.stage_note(list(staged))) if note]
+    return [f"{SLOW} {note}" for note in (clock.frame_note(timed), clock.stage_note(list(staged))) if note]
 
 
 def mean_row(rows: list[dict], keys: list[str], label: str) -> dict:

@@ -19,8 +19,8 @@ STAGES = ("setup", "binning", "low_raster", "high_raster")
 OWN_STAGES = ("blocks", "sort")
 RASTER = ("low_raster", "high_raster")
 WITHIN = ("The paper's low and high raster hold what is timed here as blocks (the lists of tri-half-blocks) and "
-          "sort (their order by depth), for both kinds of bins: compare its low + high with blocks + sort + low + "
-          "high.")
+          "sort (the order by depth of all but short lists, which low raster sorts itself): compare its low + high "
+          "with blocks + sort + low + high. There low and high part the bins, here the lists of half-blocks.")
 
 
 def performance(found: Measurements, device: str, table: str) -> Table:
@@ -189,7 +189,7 @@ def depth_filter(found: Measurements, device: str) -> Table:
                 cell = cells.get(f"df{n}")
                 if cell and "invalid_pixels" in cell["counters"]:
                     invalid = cell["counters"]["invalid_pixels"]
-                    row[f"m.n{n}"] = Number(invalid, digits=6)
+                    row[f"m.n{n}"] = Number(invalid, printed=str(invalid))
                     row[f"m.share{n}"] = Number(100 * invalid / (cell["size"][0] * cell["size"][1]), digits=2)
                 compared = ratio(cells, f"df{n}", "df3")
                 if n > 3 and compared:
@@ -208,7 +208,9 @@ def depth_filter(found: Measurements, device: str) -> Table:
         agreement = [s for s in (order("Invalid pixels at DF=3", pairs_of(rows, "n3")),
                                  _falling(rows), factor("Time at DF=8", pairs_of(rows, "time8")),
                                  factor("Time at DF=12", pairs_of(rows, "time12"))) if s]
-        notes += clock_notes(used) + without_ratios(general_notes(context, used, others, "2560x1330"))
+        timed = any(row.get(f"m.time{n}") for row in rows for n in (8, 12))
+        notes += clock_notes(used if timed else []) + without_ratios(
+            general_notes(context, used, others, "2560x1330"))
     keys = [f"{side}.{key}" for side in "pm" for key in ("share3", "share8", "share12", "time8", "time12")]
     return Table(
         name=f"depth-filter-{file_name(device)}", title="Fragment sorting errors by depth filter (repair off)",
@@ -216,7 +218,8 @@ def depth_filter(found: Measurements, device: str) -> Table:
         columns=[Column("scene", "scene")] + columns(metrics, "paper", device),
         rows=[*rows, mean_row(rows, [k for k in keys if not k.startswith("p.share")], "mean")],
         measured_on=head(context, used), agreement=agreement, notes=notes,
-        missing=[row["scene"] for row in rows if not row.get("m.n3")],
+        missing=[row["scene"] for row in rows if not all(
+            row.get(f"m.{key}") for key in ("n3", "n8", "n12", "time8", "time12"))],
         command="oitlab run experiments/depth_filter.toml",
     )
 

@@ -12,7 +12,7 @@ from .. import formats
 from ..table import markdown_text
 
 GAP = formats.NOTHING
-SLOW = " †"  # beside or instead of a time that was taken at a lower clock (clock.py)
+SLOW = "†"  # beside or instead of a time that was taken at a lower clock (clock.py)
 MOST_NAMED = 6
 
 
@@ -30,9 +30,10 @@ class Number:
     def text(self) -> str:
         if self.printed:
             return self.printed
+        mark = f" {self.mark}" if self.mark else ""
         if self.low is not None and self.high is not None:
-            return formats.with_interval(self.value, self.low, self.high) + self.mark
-        return formats.number(self.value, self.digits) + self.mark
+            return formats.with_interval(self.value, self.low, self.high) + mark
+        return formats.number(self.value, self.digits) + mark
 
 
 @dataclass(frozen=True)
