@@ -241,7 +241,7 @@ def bma_figure9(table: pandas.DataFrame) -> Figure | None:
     axes.set_xlabel("fragments a pixel")
     axes.set_ylabel("time, relative to insertion sort")
     axes.set_ylim(bottom=0)
-    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncol=len(sorts))  # covers no point
+    axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1.06), ncol=len(sorts))  # above the title
     return figure
 
 

@@ -39,13 +39,14 @@ def stage_note(cells: list[dict]) -> str:
     """How many cells of these have no stage times for it, and why; empty where none."""
     slow, counted = sum(map(stages_are_slow, cells)), len(cells)
     return (f"Stage times of {slow} of {counted} cells were left out: with timers between the stages these "
-            f"took more than {SLOWER} times as long as the quickest block of frames, since the device ran at a "
-            "lower clock in that run. Remove these cells and run again.") if slow else ""
+            f"took more than {SLOWER} times as long as the quickest block of frames, since the device was slower "
+            "in that run, as a GPU that has idled is, at a lower clock. Remove these cells and run again.") if slow else ""
 
 
 def frame_note(cells: list[dict]) -> str:
     """How many cells of these have a median frame that is not of the quickest clock; empty where none."""
     slow, counted = sum(map(frames_are_slow, cells)), len(cells)
     return (f"The median frame of {slow} of {counted} cells is more than {SLOWER} times their quickest block of "
-            "frames, or their stages together: the device ran at a lower clock in half of their blocks or more. "
+            "frames, or their stages together: the device was slower, as a GPU is at a lower clock, in half of their "
+            "blocks or more. "
             "Ratios are of blocks measured in turn, which cancels most of it, not all.") if slow else ""
