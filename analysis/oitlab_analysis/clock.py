@@ -40,7 +40,8 @@ def stage_note(cells: list[dict]) -> str:
     slow, counted = sum(map(stages_are_slow, cells)), len(cells)
     return (f"Stage times of {slow} of {counted} cells were left out: with timers between the stages these "
             f"took more than {SLOWER} times as long as the quickest block of frames, since the device was slower "
-            "in that run, as a GPU that has idled is, at a lower clock. Remove these cells and run again.") if slow else ""
+            "in that run, as a GPU that has idled is, at a lower clock. Remove these cells and run "
+            "again.") if slow else ""
 
 
 def frame_note(cells: list[dict]) -> str:

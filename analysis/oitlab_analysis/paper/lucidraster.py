@@ -46,7 +46,8 @@ def performance(found: Measurements, device: str, table: str) -> Table:
     context, rows, used, others = build("performance", rows_of, found, device)
     metrics = [("samples", "samples, M"), ("s_hb", "S/HB"), ("sw", "SW, µs"), ("hw", "HW, µs"),
                ("sw_hw", "SW/HW"), ("setup", "setup, µs"), ("binning", "binning, µs"),
-               ("blocks", "blocks, µs"), ("sort", "sort, µs"), ("low_raster", "low, µs"), ("high_raster", "high, µs"), ("repaired", "SW/HW, repaired")]
+               ("blocks", "blocks, µs"), ("sort", "sort, µs"), ("low_raster", "low, µs"),
+               ("high_raster", "high, µs"), ("repaired", "SW/HW, repaired")]
     keys = [f"{side}.{key}" for side in "pm" for key in ("sw_hw", "repaired")]
     notes = not_in_turn(rows, "m.sw_hw", ("m.sw", "m.hw"))
     agreement = []
