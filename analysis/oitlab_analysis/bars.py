@@ -32,7 +32,8 @@ MEMORY_CAPTION = (
 )
 STAGE_CAPTION = (
     "Stage times: medians of a separate run with timers between the stages, which change what they "
-    "time. The mark is the whole frame, measured without them."
+    "time. The mark is the whole frame, measured without them. Stages that were timed at a lower clock "
+    "than the frames are left out."
 )
 
 

@@ -151,6 +151,7 @@ def bma_figure5(table: pandas.DataFrame) -> Figure | None:
                  color=COLOURS[index % 5], edgecolor="black", linewidth=0.5,
                  label=_scene_name(scene) + ("" if scenes.count(scene) == 1 else f", {view}"))
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")  # powers would need parse_math
     axes.set_xticks(range(len(shown)), [_range(i) for i in shown])
     axes.set_xlabel("fragments a pixel")
     axes.set_ylabel("pixels")
@@ -240,7 +241,7 @@ def bma_figure9(table: pandas.DataFrame) -> Figure | None:
     axes.set_xlabel("fragments a pixel")
     axes.set_ylabel("time, relative to insertion sort")
     axes.set_ylim(bottom=0)
-    axes.legend(frameon=False, loc="lower left", ncol=len(sorts))
+    axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1.06), ncol=len(sorts))  # above the title
     return figure
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pandas
 
 from .checks import FRAME_STATISTICS, NotACell, cell_of, check_samples
+from .clock import stages_are_slow
 from .formats import one_line
 from .memory import own_memory
 from .packs import PACK_SUFFIX, read_bytes, read_pack
@@ -121,7 +122,8 @@ def as_table(cells: dict[str, dict]) -> pandas.DataFrame:
 
 
 def flatten(cell: dict) -> dict[str, object]:
-    """The columns of one cell. What a failed or skipped cell does not have stays empty."""
+    """The columns of one cell. What a failed or skipped cell does not have stays empty, and so do
+    stages that were timed at a lower clock than the frames."""
     scene, device, provenance = cell["scene"], cell["device"], cell["provenance"]
     frame = cell.get("statistics", {}).get("frame", {})
     interval = frame.get("ci95", [None, None])
@@ -168,6 +170,9 @@ def flatten(cell: dict) -> dict[str, object]:
     row |= {f"quality.{key}": value for key, value in (cell.get("quality") or {}).items()}
     row |= {f"counter.{key}": value for key, value in cell.get("counters", {}).items()}
     stages = cell.get("gpu_ms", {}).get("stages", {})
+    row["stages_left_out"] = bool(stages) and stages_are_slow(cell)
+    if row["stages_left_out"]:
+        stages = {}
     # JSON objects have no order; the stages have one, and charts follow it.
     order = [key for key in cell.get("stage_order", []) if key in stages] or list(stages)
     row |= {f"stage.{key}_ms": stages[key] for key in order}

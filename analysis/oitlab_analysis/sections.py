@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import pandas
 
 from .cells import Collection
+from .clock import frame_note, stage_note
 from .formats import NOTHING
 from .labels import add_labels
 from .device_notes import note_of
@@ -147,6 +148,7 @@ def _measurement_warnings(cells: list[dict]) -> list[str]:
     rejected = sum(c["stop"].get("rejected_samples") or 0 for c in cells)
     if rejected:
         warnings.append(f"{rejected} frame times were rejected (zero or negative timestamps).")
+    warnings += [note for note in (frame_note(cells), stage_note(cells)) if note]
     versions: dict[str, set[str]] = {}
     for cell in cells:
         for shader, digest in (cell["provenance"].get("shaders") or {}).items():

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 
-from .. import scatter, sweeps
+from .. import plots, scatter, sweeps
 from ..cells import Collection, as_table
 from ..sections import add_comparisons, make_sections
 from ..style import STYLE, save
@@ -80,7 +80,9 @@ def draw_pictures(found: Measurements, device: str, out: Path) -> list[tuple[str
         for name, experiment, caption, draw in PLOTS:
             section = section_of(found.of(device), experiment)
             figure = draw(section) if section else None
-            drawn.append((f"{name}-{suffix}", f"{caption}. {device}.", figure))
+            count = plots.KINDS[name.removesuffix("-curve")].pages(section) if section else 1
+            rest = f" The first of {count} charts: `oitlab report` draws the others." if count > 1 else ""
+            drawn.append((f"{name}-{suffix}", f"{caption}. {device}.{rest}", figure))
         for name, says, figure in bma.figures(found, device):
             caption = f"Measured on {device}. Published ({name.split('-')[1]} of the BMA paper): {says}."
             drawn.append((name, caption, figure))

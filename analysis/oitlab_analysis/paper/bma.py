@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from ..cells import as_table
 from .agreement import factor, order
-from .common import (build, columns, file_name, general_notes, head, pairs_of, published, size_of,
-                     without_ratios)
+from .common import (build, clock_notes, columns, file_name, frame_ms, general_notes, head, pairs_of, published,
+                     size_of, without_ratios)
 from .measured import Context, Measurements, Want, choose, find, ratio
 from .published import STAND_INS, read
 from .table import Column, Number, Table
@@ -43,7 +43,7 @@ def table2(found: Measurements, device: str) -> Table:
             cells = find(context, STAND_INS[line["scene"]], wants, size_of(line["size"]), "bma", "bma")
             for role, key in (("max", "m.oit"), ("bma", "m.bma")):
                 if role in cells:
-                    row[key] = Number(cells[role]["statistics"]["frame"]["median"])
+                    row[key] = frame_ms(cells[role])
             if cells:
                 counters = cells["bma"]["counters"]
                 row["m.fragments"] = Number(counters.get("fragments", 0) / 1e6)
@@ -62,7 +62,7 @@ def table2(found: Measurements, device: str) -> Table:
     if context:
         agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
                                  factor("Speed-up", pairs_of(rows, "speedup"))) if s]
-        notes = without_ratios(general_notes(context, used, others, paper[0]["size"]))
+        notes = clock_notes(used) + without_ratios(general_notes(context, used, others, paper[0]["size"]))
     return Table(
         name=f"bma-table2-{file_name(device)}", title="BMA: fixed allocation (OIT) against BMA-OIT",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
@@ -75,15 +75,15 @@ def table2(found: Measurements, device: str) -> Table:
 def cells_of(found: Measurements, device: str, method: str) -> tuple[Context | None, pandas.DataFrame | None]:
     """The context with most measured cells of a method, and their table: of the experiment that is
     made for it where there is one, since the same cell may have been measured in others too."""
-    def cells(context: Context) -> list[dict]:
-        own = [c for c in context.cells if c["experiment"] == "bma"]
-        return own or context.cells
-
     def count(context: Context) -> int:
-        return sum(c["method"] == method and c["status"] == "ok" for c in cells(context))
+        return sum(c["method"] == method and c["status"] == "ok" for c in own_cells(context))
 
     context = choose(found.of(device), count)
-    return (context, as_table({c["id"]: c for c in cells(context)})) if context else (None, None)
+    return (context, as_table({c["id"]: c for c in own_cells(context)})) if context else (None, None)
+
+
+def own_cells(context: Context) -> list[dict]:
+    return [c for c in context.cells if c["experiment"] == "bma"] or context.cells
 
 
 def table1(found: Measurements, device: str) -> Table:
@@ -98,15 +98,31 @@ def table1(found: Measurements, device: str) -> Table:
                      "m.speedup": Number(value) if value is not None else None})
     agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
                              factor("Speed-up", pairs_of(rows, "speedup"))) if s]
+    shallow = [row["scene"] for row, line in zip(rows, paper)
+               if is_shallow(cells, STAND_INS[line["scene"]], int(line["interval"]))]
+    absent = [f"No pixel of the stand-in has so many fragments: {'; '.join(shallow)}."] if shallow else []
+    notes = []
+    if context:
+        staged = [c for c in own_cells(context) if c["status"] == "ok" and c["method"] == "abuffer"]
+        notes = absent + clock_notes([], staged) + without_ratios(general_notes(context, [], 0, "1680x1050"))
     return Table(
         name=f"bma-table1-{file_name(device)}", title="BMA: estimated speed-up at each interval",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",
         columns=[Column("scene", "scene, interval")] + columns([("speedup", "speed-up")], paper[0]["device"], device),
         rows=rows, measured_on=context.describe() if context else "nothing yet", agreement=agreement,
-        notes=without_ratios(general_notes(context, [], 0, "1680x1050"))
-        if context else [],
-        missing=[row["scene"] for row in rows if not row.get("m.speedup")], command=COMMAND,
+        notes=notes,
+        missing=[row["scene"] for row in rows if not row.get("m.speedup") and row["scene"] not in shallow],
+        command=COMMAND,
     )
+
+
+def is_shallow(cells: pandas.DataFrame | None, scene: str, interval: int) -> bool:
+    """Whether the stand-in was measured, and no view of it but those of a path has a pixel in the interval."""
+    name = f"counter.pixels_{interval}"
+    if cells is None or name not in cells:
+        return False
+    counts = cells[(cells["scene"] == scene) & ~cells["view"].str.startswith("path:")][name].dropna()
+    return not counts.empty and counts.max() == 0
 
 
 def speedup_in(measured: pandas.DataFrame | None, scene: str, interval: int) -> float | None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import statistics
 from collections.abc import Callable
 
+from .. import clock
 from ..device_notes import note_of
 from ..table import NOTED
 from .agreement import Pairs
 from .measured import Context, Measurements, choose
 from .published import number
-from .table import Column, Number
+from .table import SLOW, Column, Number
 
 
 def short(device: str) -> str:
@@ -23,9 +24,34 @@ def size_of(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+def frame_ms(cell: dict) -> Number:
+    return _frame(cell, 1)
+
+
 def frame_us(cell: dict) -> Number:
+    return _frame(cell, 1000)
+
+
+def _frame(cell: dict, scale: float) -> Number:
+    """The median; marked and with its interval where it is not of the quickest clock."""
     frame = cell["statistics"]["frame"]
-    return Number(1000 * frame["median"])
+    if not clock.frames_are_slow(cell):
+        return Number(scale * frame["median"])
+    low, high = frame["ci95"]
+    return Number(scale * frame["median"], scale * low, scale * high, mark=SLOW)
+
+
+def stages_us(cell: dict, stages: tuple[str, ...]) -> dict[str, Number | str]:
+    """Those of the stages that the cell has; a mark instead of times of a lower clock."""
+    times = cell["gpu_ms"]["stages"]
+    slow = clock.stages_are_slow(cell)
+    return {stage: SLOW if slow else Number(1000 * times[stage]) for stage in stages if stage in times}
+
+
+def clock_notes(timed: list[dict], staged: list[dict] = ()) -> list[str]:
+    """What is said of times taken at a lower clock: of frames, and of stages."""
+    timed = list({id(cell): cell for cell in timed}.values())  # a base may serve many rows
+    return [f"{SLOW} {note}" for note in (clock.frame_note(timed), clock.stage_note(list(staged))) if note]
 
 
 def mean_row(rows: list[dict], keys: list[str], label: str) -> dict:
@@ -39,9 +65,10 @@ def mean_row(rows: list[dict], keys: list[str], label: str) -> dict:
 
 
 def pairs_of(rows: list[dict], key: str, scale: float = 1) -> Pairs:
-    """Published beside measured, for the rules of agreement."""
+    """Published beside measured, for the rules of agreement; without times of a lower clock."""
     return {row["scene"]: (row[f"p.{key}"].value if row.get(f"p.{key}") else None,
-                           row[f"m.{key}"].value * scale if row.get(f"m.{key}") else None)
+                           row[f"m.{key}"].value * scale
+                           if row.get(f"m.{key}") and not row[f"m.{key}"].mark else None)
             for row in rows}
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .agreement import factor, order
-from .common import (build, columns, file_name, frame_us, general_notes, head, is_full_size, mean_row,
-                     not_in_turn, pairs_of, published, short, size_of, without_ratios)
+from .common import (build, clock_notes, columns, file_name, frame_us, general_notes, head, is_full_size,
+                     mean_row, not_in_turn, pairs_of, published, short, size_of, stages_us, without_ratios)
 from .measured import Context, Measurements, Want, find, ratio
 from .published import STAND_INS, read
 from .table import Column, Number, Table
@@ -15,6 +15,12 @@ LUCID = {"depth_filter": 3, "alpha_threshold": 0, "repair": False, "visualize_er
 SW, HW = Want("lucid", LUCID), Want("blend", {"order": "submission"})
 REPAIRED = Want("lucid", LUCID | {"repair": True})
 STAGES = ("setup", "binning", "low_raster", "high_raster")
+# Timed here by themselves, and part of both rasters in the paper.
+OWN_STAGES = ("blocks", "sort")
+RASTER = ("low_raster", "high_raster")
+WITHIN = ("The paper's low and high raster hold what is timed here as blocks (the lists of tri-half-blocks) and "
+          "sort (the order by depth of all but short lists, which low raster sorts itself): compare its low + high "
+          "with blocks + sort + low + high. There low and high part the bins, here the lists of half-blocks.")
 
 
 def performance(found: Measurements, device: str, table: str) -> Table:
@@ -40,19 +46,22 @@ def performance(found: Measurements, device: str, table: str) -> Table:
     context, rows, used, others = build("performance", rows_of, found, device)
     metrics = [("samples", "samples, M"), ("s_hb", "S/HB"), ("sw", "SW, µs"), ("hw", "HW, µs"),
                ("sw_hw", "SW/HW"), ("setup", "setup, µs"), ("binning", "binning, µs"),
-               ("low_raster", "low, µs"), ("high_raster", "high, µs"), ("repaired", "SW/HW, repaired")]
+               ("blocks", "blocks, µs"), ("sort", "sort, µs"), ("low_raster", "low, µs"),
+               ("high_raster", "high, µs"), ("repaired", "SW/HW, repaired")]
     keys = [f"{side}.{key}" for side in "pm" for key in ("sw_hw", "repaired")]
     notes = not_in_turn(rows, "m.sw_hw", ("m.sw", "m.hw"))
     agreement = []
     if context:
         agreement = _performance_agreement(rows, context, used, size)
-        notes += general_notes(context, used, others, size)
+        software = [cell for cell in used if SW.fits(cell)]
+        notes = [WITHIN, *clock_notes(used, software), *notes, *general_notes(context, used, others, size)]
     missing = [row["scene"] for row in rows if not row.get("m.sw")]
     return Table(
         name=f"performance-{size}-{file_name(device)}",
         title=f"LucidRaster (SW) against hardware blending (HW), {size.replace('x', '×')}",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper_device}",
-        columns=[Column("scene", "scene")] + columns(metrics, short(paper_device), device, ("repaired",)),
+        columns=[Column("scene", "scene")] + columns(metrics, short(paper_device), device,
+                                                         ("repaired", *OWN_STAGES)),
         rows=[*rows, mean_row(rows, keys, "mean")],
         measured_on=head(context, used), agreement=agreement, notes=notes, missing=missing,
         command="oitlab run experiments/performance.toml",
@@ -71,8 +80,7 @@ def _performance_cells(cells: dict[str, dict]) -> dict:
     for key, role in (("m.sw_hw", "sw"), ("m.repaired", "repaired")):
         if compared := ratio(cells, role, "hw"):
             row[key] = Number(compared.ratio, compared.low, compared.high)
-    stages = sw["gpu_ms"]["stages"]
-    row |= {f"m.{stage}": Number(1000 * stages[stage]) for stage in STAGES if stage in stages}
+    row |= {f"m.{stage}": time for stage, time in stages_us(sw, STAGES + OWN_STAGES).items()}
     return row
 
 
@@ -90,15 +98,29 @@ def _performance_agreement(rows: list[dict], context: Context, used: list[dict],
 
 
 def _dearest_stage(rows: list[dict]) -> str:
-    """In how many scenes the same stage takes most."""
-    same = counted = 0
+    """In how many scenes the same of setup, binning and all of raster takes most, and raster's share."""
+    same, shares = 0, []
     for row in rows:
-        sides = [{stage: row[f"{side}.{stage}"].value for stage in STAGES if row.get(f"{side}.{stage}")}
-                 for side in "pm"]
-        if all(len(side) > 2 for side in sides):
-            counted += 1
+        sides = [_three_stages(row, "p", RASTER), _three_stages(row, "m", RASTER + OWN_STAGES)]
+        if all(sides):
             same += max(sides[0], key=sides[0].get) == max(sides[1], key=sides[1].get)
-    return f"The dearest stage is the same in {same} of {counted} scenes." if counted else ""
+            shares.append([100 * side["raster"] / sum(side.values()) for side in sides])
+    if not shares:
+        return ""
+    published_share, measured_share = (sum(column) / len(shares) for column in zip(*shares))
+    return (f"Of setup, binning and raster (low + high; here with blocks and sort) the dearest is the same in {same} "
+            f"of {len(shares)} scenes; raster takes {measured_share:.0f} % of the three here in the mean, "
+            f"{published_share:.0f} % as published.")
+
+
+def _three_stages(row: dict, side: str, raster: tuple[str, ...]) -> dict[str, float]:
+    """setup, binning and all of raster; empty where one is missing or of a lower clock."""
+    wanted = ("setup", "binning", *raster)
+    times = {stage: row.get(f"{side}.{stage}") for stage in wanted}
+    if not all(isinstance(time, Number) for time in times.values()):
+        return {}
+    return {"setup": times["setup"].value, "binning": times["binning"].value,
+            "raster": sum(times[stage].value for stage in raster)}
 
 
 def scenes(found: Measurements, device: str) -> Table:
@@ -168,7 +190,7 @@ def depth_filter(found: Measurements, device: str) -> Table:
                 cell = cells.get(f"df{n}")
                 if cell and "invalid_pixels" in cell["counters"]:
                     invalid = cell["counters"]["invalid_pixels"]
-                    row[f"m.n{n}"] = Number(invalid, digits=6)
+                    row[f"m.n{n}"] = Number(invalid, printed=str(invalid))
                     row[f"m.share{n}"] = Number(100 * invalid / (cell["size"][0] * cell["size"][1]), digits=2)
                 compared = ratio(cells, f"df{n}", "df3")
                 if n > 3 and compared:
@@ -187,7 +209,9 @@ def depth_filter(found: Measurements, device: str) -> Table:
         agreement = [s for s in (order("Invalid pixels at DF=3", pairs_of(rows, "n3")),
                                  _falling(rows), factor("Time at DF=8", pairs_of(rows, "time8")),
                                  factor("Time at DF=12", pairs_of(rows, "time12"))) if s]
-        notes += without_ratios(general_notes(context, used, others, "2560x1330"))
+        timed = any(row.get(f"m.time{n}") for row in rows for n in (8, 12))
+        notes += clock_notes(used if timed else []) + without_ratios(
+            general_notes(context, used, others, "2560x1330"))
     keys = [f"{side}.{key}" for side in "pm" for key in ("share3", "share8", "share12", "time8", "time12")]
     return Table(
         name=f"depth-filter-{file_name(device)}", title="Fragment sorting errors by depth filter (repair off)",
@@ -195,7 +219,8 @@ def depth_filter(found: Measurements, device: str) -> Table:
         columns=[Column("scene", "scene")] + columns(metrics, "paper", device),
         rows=[*rows, mean_row(rows, [k for k in keys if not k.startswith("p.share")], "mean")],
         measured_on=head(context, used), agreement=agreement, notes=notes,
-        missing=[row["scene"] for row in rows if not row.get("m.n3")],
+        missing=[row["scene"] for row in rows if not all(
+            row.get(f"m.{key}") for key in ("n3", "n8", "n12", "time8", "time12"))],
         command="oitlab run experiments/depth_filter.toml",
     )
 
@@ -238,7 +263,7 @@ def alpha_threshold(found: Measurements, device: str) -> Table:
     if context:
         agreement = [s for s in (order("Speed-up", pairs_of(rows, "speedup")),
                                  factor("Speed-up", pairs_of(rows, "speedup"))) if s]
-        notes += general_notes(context, used, others, paper[0]["size"])
+        notes += clock_notes(used) + general_notes(context, used, others, paper[0]["size"])
     return Table(
         name=f"alpha-threshold-{file_name(device)}", title="Alpha threshold off and on (1 - 1/128)",
         source=f"{paper[0]['source']}, {paper[0]['table']}, {paper[0]['device']}",

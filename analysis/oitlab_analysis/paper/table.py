@@ -12,6 +12,7 @@ from .. import formats
 from ..table import markdown_text
 
 GAP = formats.NOTHING
+SLOW = "†"  # beside or instead of a time that was taken at a lower clock (clock.py)
 MOST_NAMED = 6
 
 
@@ -24,13 +25,15 @@ class Number:
     high: float | None = None
     digits: int = 3
     printed: str = ""
+    mark: str = ""  # of a note under the table
 
     def text(self) -> str:
         if self.printed:
             return self.printed
+        mark = f" {self.mark}" if self.mark else ""
         if self.low is not None and self.high is not None:
-            return formats.with_interval(self.value, self.low, self.high)
-        return formats.number(self.value, self.digits)
+            return formats.with_interval(self.value, self.low, self.high) + mark
+        return formats.number(self.value, self.digits) + mark
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,7 @@ def write_csv(table: Table, path: Path) -> None:
         for row in table.rows:
             line = []
             for c, interval in columns:
-                value = row.get(c.key)
+                value = row.get(c.key) if row.get(c.key) != SLOW else None
                 if isinstance(value, Number):
                     line += [value.value, value.low, value.high] if interval else [value.value]
                 else:

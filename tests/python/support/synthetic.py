@@ -102,6 +102,21 @@ def without_measurement(cell: dict, status: str, reason: str) -> dict:
     return {key: cell[key] for key in kept} | {"status": status, "reason": reason, "scene": scene}
 
 
+def with_slow_stages(cell: dict, factor: float = 3) -> dict:
+    """The same cell, its stages timed at a lower clock than its frames."""
+    stages = {name: factor * time for name, time in cell["gpu_ms"]["stages"].items()}
+    return cell | {"gpu_ms": cell["gpu_ms"] | {"stages": stages}}
+
+
+def with_slow_blocks(cell: dict, slow: int, factor: float = 3) -> dict:
+    """The same cell, its first blocks of frames timed at a lower clock."""
+    times = [time * (factor if block < slow else 1)
+             for time, block in zip(cell["samples"]["frame_ms"], cell["samples"]["block"])]
+    return cell | {"samples": cell["samples"] | {"frame_ms": times},
+                   "gpu_ms": cell["gpu_ms"] | {"frame": float(numpy.median(times))},
+                   "statistics": cell["statistics"] | {"frame": quantiles(times)}}
+
+
 def write_cell(folder: Path, cell: dict, image: bool = True) -> None:
     (folder / "cells").mkdir(parents=True, exist_ok=True)
     (folder / "cells" / f"{cell['id']}.json").write_text(json.dumps(cell), encoding="utf-8")
@@ -135,8 +150,8 @@ def make_results(folder: Path, methods: int = 4, scenes: int = 3, device: dict =
 PAPER_SCENES = {"boxes": 0.4, "bunny": 0.08, "conference": 0.23, "dragon": 0.25, "gallery": 0.68,
                 "hairball": 3.6, "powerplant": 4.8, "sanmiguel": 3.7, "scrubpine": 0.19,
                 "sponza_like": 1.7, "teapot": 0.11, "whiteoak": 6.0}
-LUCID_STAGES = {"setup": 0.14, "binning": 0.05, "low_raster": 0.6, "high_raster": 0.18,
-                "repair": 0.03}
+LUCID_STAGES = {"setup": 0.14, "binning": 0.05, "blocks": 0.2, "sort": 0.1, "low_raster": 0.3,
+                "high_raster": 0.18, "repair": 0.03}
 
 
 def lucid_cell(scene: str, blend_ms: float, factor: float = 3.3, invalid: int = 0,
