@@ -1,7 +1,8 @@
 """Raw cells as small files: `*.json.gz`, one cell each, or all cells of a folder in one pack.
 
 A pack is {"schema": 1, "pack": "oitlab cells", "cells": [cell, ...]}, compressed. The cells are kept
-as they are, with every sample; pictures are not packed.
+as they are, with every sample, but for the folders in which somebody's files lay; pictures are not
+packed.
 """
 
 from __future__ import annotations
@@ -52,6 +53,12 @@ def read_pack(path: Path) -> list[bytes | dict]:
     return cells
 
 
+def without_folders(command: str) -> str:
+    """Of absolute paths the last two parts, `experiments/bma.toml`: the rest is one machine's."""
+    return " ".join("/".join(Path(word).parts[-2:]) if word.startswith("/") and len(Path(word).parts) > 3
+                    else word for word in command.split(" "))
+
+
 def write_pack(results: Path, target: Path) -> tuple[int, list[str]]:
     """Packs the cells of a results folder; returns how many, and what was left out and why.
 
@@ -62,7 +69,10 @@ def write_pack(results: Path, target: Path) -> tuple[int, list[str]]:
         try:
             content = read_bytes(path)
             cell_of(content)
-            cells.append(json.loads(content))
+            cell = json.loads(content)
+            if command := cell["provenance"].get("command"):
+                cell["provenance"]["command"] = without_folders(command)
+            cells.append(cell)
         except NotACell as error:
             left_out.append(f"{path.name}: {error}")
     if cells:

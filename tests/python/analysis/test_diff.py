@@ -7,6 +7,7 @@ import pytest
 from oitlab_analysis.__main__ import main
 from oitlab_analysis.cells import BadResults
 from oitlab_analysis.diff import diff, markdown, terminal
+from oitlab_analysis.packs import without_folders
 from synthetic import DEVICE, LAVAPIPE, make_cell, without_measurement, write_cell
 
 
@@ -141,6 +142,13 @@ def test_packs_hold_the_cells_as_they_are(tmp_path, capsys, monkeypatch):
     pack.write_bytes(first[:200])
     with pytest.raises(BadResults, match="half-written or not compressed"):
         diff(a, pack)
+
+
+def test_packs_do_not_say_where_files_lay():
+    command = "oitlab run /home/jo/oit/experiments/bma.toml --size 64x32 --results /scratch/42/results/bma"
+    assert without_folders(command) == (
+        "oitlab run experiments/bma.toml --size 64x32 --results results/bma")
+    assert without_folders("oitlab run experiments/bma.toml") == "oitlab run experiments/bma.toml"
 
 
 @pytest.mark.parametrize("source, target", [("no", "x.json.gz"), ("empty", "x.json.gz"), ("a", "x.zip")])
