@@ -33,7 +33,7 @@ RenderFixture::Result expectRight(const Scene& scene, int width, int height,
   EXPECT_LT(edges, 0.2 * pixels);
   EXPECT_LT(orders, 0.01 * pixels);
   EXPECT_EQ(fixture.render("lucid", {{"depth_filter", "1"}}).hash, ours.hash);
-  EXPECT_EQ(fixture.render("lucid", {{"ordered_first", "on"}}).hash, ours.hash);
+  EXPECT_EQ(fixture.render("lucid", {{"ordered_first", "off"}}).hash, ours.hash);
   EXPECT_EQ(
       RenderFixture(scene, std::uint32_t(width), std::uint32_t(height), 5).render("lucid").hash,
       ours.hash);

@@ -276,9 +276,9 @@ const RegisterMethod registered({
               "blend pixels whose order went wrong again in exact order; off: the paper's image"),
          real("alpha_threshold", 0.0, 0.0, 1.0,
               "stop blending a pixel at this coverage; 0: never; the paper: 0.9921875"),
-         choice("ordered_first", {"auto", "on", "off"},
-                "blend short lists without the depth filter first, and only pixels out of order "
-                "with it; auto: on GPUs. Does not show in the image"),
+         flag("ordered_first", true,
+              "blend short lists with a depth filter of 1 first, and only pixels out of order with "
+              "the whole; off: all with the whole, as the paper. Does not show in the image"),
          flag("visualize_errors", false, "paint pixels whose order went wrong red"),
          flag("backface_culling", false,
               "drop quads that face away, which no other method does: for the scene table"),

@@ -43,11 +43,8 @@ bool verifiesLoops(const Device& device) {
 
 Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
                    const std::string& targetFormat, const Parameters& parameters) {
-  // Where subgroups are wide, short lists are quicker with a small depth filter, for which
-  // subgroups take less room; on a CPU the pixels that are passed on cost more than is won.
   const bool isWide = device.info().subgroupSize >= 32;
-  const std::string& choice = parameters.choice("ordered_first");
-  ordersFirst = choice == "auto" ? isWide : choice == "on";
+  ordersFirst = parameters.flag("ordered_first");
   // Half-blocks that a workgroup works on side by side. They wait for each other, but each
   // workgroup takes 1 KB of shared memory beside what it asks for (docs/performance.md); a CPU has
   // fewer workgroups to start.
