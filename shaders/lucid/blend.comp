@@ -124,17 +124,25 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit) {
         teamBarrier();
         const uint here = min(b.size - part, PREPARED_COUNT), at = b.at + part;
         turns += here;
-        // In pairs, and without branches: what the one waits for, the other has time for.
-        for (uint k = 0u; k < here; k += 2u) {
-          const uint next = min(k + 1u, here - 1u);
-          const bool covers0 = owner && (batch[at + k].y & (1u << bit)) != 0u;
-          const bool covers1 = owner && (batch[at + next].y & (1u << bit)) != 0u && next > k;
+        // In pairs, and without branches: what the one waits for, the other has time for. Small
+        // subgroups are a CPU's, which has nothing to gain from the one that an odd number lacks.
+        const bool inPairs = SUBGROUP_SIZE >= 32u;
+        for (uint k = 0u; k < here; k += inPairs ? 2u : 1u) {
           const bool full = isFull(p);
+          const bool covers0 = owner && (batch[at + k].y & (1u << bit)) != 0u;
           const Taken t0 = take(team * PREPARED_COUNT + k, covers0, pixel, opaque, full);
-          const Taken t1 = take(team * PREPARED_COUNT + next, covers1, pixel, opaque, full);
+          Taken t1;
+          if (inPairs) {
+            const uint next = min(k + 1u, here - 1u);
+            const bool covers1 = owner && (batch[at + next].y & (1u << bit)) != 0u && next > k;
+            t1 = take(team * PREPARED_COUNT + next, covers1, pixel, opaque, full);
+          }
           if (t0.kept) pushFragment(p, t0.f);
-          if (t1.kept) pushFragment(p, t1.f);
-          samples += uint(t0.blends) + uint(t1.blends);
+          samples += uint(t0.blends);
+          if (inPairs) {
+            if (t1.kept) pushFragment(p, t1.f);
+            samples += uint(t1.blends);
+          }
         }
         teamBarrier();
       }
