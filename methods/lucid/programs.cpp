@@ -63,23 +63,23 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
       {"HAS_THRESHOLD", parameters.real("alpha_threshold") > 0.0 ? "1" : "0"},
       {"UNIFORM_CONTROL_FLOW", device.hasSubgroupUniformControlFlow() ? "1" : "0"},
       {"VERIFY_LOOPS", verifiesLoops(device) ? "1" : "0"}};
-  auto raster = [&](const char* list, const char* teams, std::int64_t filter) {
+  auto raster = [&](const std::string& kind, const char* teams, std::int64_t filter) {
     Defines defines = common;
-    defines["LOW_TEAMS"] = lowTeams;
-    defines["ORDERED"] = list == std::string("ORDERED_LIST") ? "1" : "0";
-    defines["HIGH"] = list == std::string("HIGH_LIST") ? "1" : "0";
+    defines["ORDERED"] = kind == "ordered" ? "1" : "0";
+    defines["HIGH"] = kind == "high" ? "1" : "0";
+    defines["LIST"] = "ORDERED_LIST";  // of the one that sorts
     defines["TEAMS"] = teams;
-    defines["LIST"] = list;
+    defines["LOW_TEAMS"] = lowTeams;
     defines["DEPTH_FILTER"] = std::to_string(filter);
     return Pipeline::compute(device, "lucid/blend.comp", defines, {}, lanes);
   };
-  auto sort = [&](const char* list, const char* teams) {
+  auto sort = [&](const std::string& kind, const char* teams) {
     return Pipeline::compute(device, "lucid/sort_lists.comp",
                              {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")},
                               {"UNIFORM_CONTROL_FLOW", common.at("UNIFORM_CONTROL_FLOW")},
-                              {"HIGH", list == std::string("HIGH_LIST") ? "1" : "0"},
-                              {"TEAMS", teams},
-                              {"LIST", list}},
+                              {"HIGH", kind == "high" ? "1" : "0"},
+                              {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
+                              {"TEAMS", teams}},
                              {}, lanes);
   };
   // A workgroup a part of a bin. On a CPU a large one is no faster.
@@ -92,11 +92,11 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
                                       {"GROUP", group},
                                       {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}});
   const std::int64_t filter = parameters.integer("depth_filter");
-  if (ordersFirst) ordered = raster("ORDERED_LIST", orderedTeams, 1);
-  lowRaster = raster("LOW_LIST", lowTeams, filter);
-  highRaster = raster("HIGH_LIST", "1u", filter);
-  sortLow = sort("LOW_LIST", lowTeams);
-  sortHigh = sort("HIGH_LIST", "1u");
+  if (ordersFirst) ordered = raster("ordered", orderedTeams, 1);
+  lowRaster = raster("low", lowTeams, filter);
+  highRaster = raster("high", "1u", filter);
+  sortLow = sort("low", lowTeams);
+  sortHigh = sort("high", "1u");
   repair = Pipeline::compute(device, "lucid/repair.comp", common, {}, lanes);
   deepCapture = Pipeline::compute(device, "lucid/deep_capture.comp",
                                   {{"TARGET_FORMAT", targetFormat},

@@ -145,7 +145,7 @@ def test_packs_hold_the_cells_as_they_are(tmp_path, capsys, monkeypatch):
 
 
 def test_packs_do_not_say_where_files_lay():
-    command = "oitlab run /home/jo/oit/experiments/bma.toml --size 64x32 --results /scratch/42/results/bma"
+    command = "oitlab run /volume/oit/experiments/bma.toml --size 64x32 --results /data/job/42/results/bma"
     assert without_folders(command) == (
         "oitlab run experiments/bma.toml --size 64x32 --results results/bma")
     assert without_folders("oitlab run experiments/bma.toml") == "oitlab run experiments/bma.toml"
