@@ -141,6 +141,12 @@ class Want:
             cell["parameters"].get(name, 0) == value for name, value in self.parameters.items())
 
 
+# Experiments whose tables are of times, and blocks of frames without which a time has no interval
+# (min_blocks of their profiles): an experiment that takes a frame for its counts gives no times.
+TIMED = ("performance", "methods", "alpha_threshold", "depth_filter")
+FEWEST_BLOCKS = 6
+
+
 def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, int] | None,
          needed: str, experiment: str, opacity: float | None = None,
          any_opacity: bool = True) -> dict[str, dict]:
@@ -158,6 +164,9 @@ def find(context: Context, scene: str, wants: dict[str, Want], size: tuple[int, 
         if cell["scene"]["name"] != scene:
             continue
         if not any_opacity and cell["scene"].get("opacity") != opacity:
+            continue
+        # A cell that failed has no blocks, and its reason is told.
+        if experiment in TIMED and (cell.get("stop") or {}).get("blocks", FEWEST_BLOCKS) < FEWEST_BLOCKS:
             continue
         for role, want in wants.items():
             if want.fits(cell):

@@ -141,6 +141,18 @@ def test_a_gap_is_shown_with_the_command_that_fills_it(tmp_path):
     assert "bma-table2-example-gpu-4000: not measured: any row; run: oitlab run experiments/bma.toml" in said
 
 
+def test_an_experiment_that_takes_a_frame_for_its_counts_gives_no_times(tmp_path):
+    write_performance(tmp_path, ["boxes"])
+    few = lucid_cell("teapot", 1, size=SIZE, experiment="memory", parameters={"repair": False}, blocks=5)
+    enough = lucid_cell("bunny", 1, size=SIZE, experiment="other", parameters={"repair": False}, blocks=6)
+    for cell in (few, enough):
+        write_cell(tmp_path, cell)
+    make_paper([tmp_path], tmp_path / "out")
+    rows = table_of(tmp_path / "out", "performance-2560x1330-example-gpu-4000")
+    assert rows["Teapot"]["SW, µs (Example GPU 4000 (measured))"] == ""
+    assert rows["Bunny"]["SW, µs (Example GPU 4000 (measured))"] != ""
+
+
 def test_failed_cells_are_gaps_and_said(tmp_path):
     write_performance(tmp_path, ["boxes"])
     cell = lucid_cell("teapot", 1, size=SIZE, experiment="performance", parameters={"repair": False})
