@@ -8,8 +8,7 @@
 namespace oitlab {
 
 /// Zeroes several buffers by one dispatch. Between dispatches this is quicker than a
-/// vkCmdFillBuffer for each, which waits for the transfer stage and back: on an NVIDIA H200 by some
-/// 10 us a frame for four (docs/performance.md).
+/// vkCmdFillBuffer for each, which waits for the transfer stage and back.
 class ZeroFill {
  public:
   explicit ZeroFill(const Device& device);

@@ -23,6 +23,15 @@ std::uint64_t withSlack(std::uint64_t counted) {
   return counted + counted / 16 + 64;
 }
 
+/// Dispatches a program of as many workgroups as `offset` in `counters` says.
+template <typename Push>
+void dispatchCounted(const Frame& frame, const Pipeline& pipeline, const Push& push,
+                     vk::Buffer counters, std::size_t offset) {
+  pipeline.bind(frame.commands, frame.bindings);
+  pipeline.push(frame.commands, push);
+  frame.commands.dispatchIndirect(counters, offset);
+}
+
 }  // namespace
 
 class Lucid : public Method {
@@ -51,26 +60,24 @@ class Lucid : public Method {
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
     const BlendPush push = pushOf(frame, front);
-    auto indirect = [&](const Pipeline& pipeline, std::size_t offset) {
-      pipeline.bind(frame.commands, frame.bindings);
-      pipeline.push(frame.commands, push);
-      frame.commands.dispatchIndirect(buffers_->counters.vk(), offset);
+    auto run = [&](const Pipeline& pipeline, std::size_t offset) {
+      dispatchCounted(frame, pipeline, push, buffers_->counters.vk(), offset);
     };
     // Within a step no barrier parts the programs: their half-blocks are different ones. Long lists
     // come first, since the last to end holds up the frame.
     const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
     frame.stage("sort", [&] {
-      if (needed_.longLists) indirect(programs_.sortHigh, high);
-      if (needed_.filter) indirect(programs_.sortLow, low);
+      if (needed_.longLists) run(programs_.sortHigh, high);
+      if (needed_.filter) run(programs_.sortLow, low);
     });
     frame.stage("low_raster", [&] {
-      if (programs_.ordersFirst) indirect(programs_.ordered, offsetof(LucidCounters, ordered));
+      if (programs_.ordersFirst) run(programs_.ordered, offsetof(LucidCounters, ordered));
       if (needed_.filter || needed_.longLists)
         frame.barrier(compute, compute | Stage::eDrawIndirect);
-      if (needed_.filter) indirect(programs_.lowRaster, low);
+      if (needed_.filter) run(programs_.lowRaster, low);
     });
     frame.stage("high_raster", [&] {
-      if (needed_.longLists) indirect(programs_.highRaster, high);
+      if (needed_.longLists) run(programs_.highRaster, high);
     });
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, front, push);
@@ -172,10 +179,8 @@ class Lucid : public Method {
                           .listCapacity = buffers_->listCapacity,
                           .near = frame.camera.near,
                           .size = {frame.target.width(), frame.target.height()}};
-    auto run = [&](int pass, std::size_t offset) {
-      programs_.blocks[std::size_t(pass)].bind(frame.commands, frame.bindings);
-      programs_.blocks[std::size_t(pass)].push(frame.commands, push);
-      frame.commands.dispatchIndirect(frontEnd_->counters(), offset);
+    auto run = [&](std::size_t pass, std::size_t offset) {
+      dispatchCounted(frame, programs_.blocks[pass], push, frontEnd_->counters(), offset);
     };
     if (needed_.highBins) run(1, offsetof(RasterCounters, high));
     run(0, offsetof(RasterCounters, low));
@@ -229,9 +234,7 @@ class Lucid : public Method {
                     .round = 0,
                     .rounds = deepRounds_};
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
-      pipeline.bind(frame.commands, frame.bindings);
-      pipeline.push(frame.commands, push);
-      frame.commands.dispatchIndirect(buffers_->counters.vk(), offset);
+      dispatchCounted(frame, pipeline, push, buffers_->counters.vk(), offset);
     };
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(programs_.repair, offsetof(LucidCounters, repair));
