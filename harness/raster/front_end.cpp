@@ -23,6 +23,12 @@ std::uint32_t divideUp(std::uint32_t a, std::uint32_t b) {
   return (a + b - 1) / b;
 }
 
+/// An invocation an item.
+void dispatchEach(const Commands& commands, std::uint32_t items) {
+  const std::uint32_t groups = divideUp(std::max(items, 1u), SETUP_GROUP);
+  commands.dispatch(std::min(groups, MAX_GROUPS), divideUp(groups, MAX_GROUPS), 1);
+}
+
 }  // namespace
 
 FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& target,
@@ -33,7 +39,9 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       binColumns_(divideUp(target.width(), BIN_SIZE)),
       binRows_(divideUp(target.height(), BIN_SIZE)),
       zeroFill_(device),
+      project_(Pipeline::compute(device, "raster/project.comp")),
       setup_(Pipeline::compute(device, "raster/setup.comp")),
+      irregularQuads_(Pipeline::compute(device, "raster/irregular.comp")),
       countLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "1"}})),
       offsets_(Pipeline::compute(device, "raster/bin_offsets.comp")),
       writeSmall_(Pipeline::compute(device, "raster/bin_small.comp")),
@@ -44,7 +52,8 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
   readback_ = Buffer(device, memory, "raster counters readback", sizeof(RasterCounters),
                      BufferKind::readback);
   // First guesses; the first frame tells.
-  makeRoomForQuads(std::min<std::uint64_t>(quadCount_, 4096));
+  makeRoomForSmall(std::min<std::uint64_t>(quadCount_, 4096));
+  makeRoomForLarge(1024);
   makeRoomForIrregular(64);
   makeRoomForEntries(std::uint64_t(bins()) * 4);
 }
@@ -63,40 +72,52 @@ void FrontEnd::makeQuads(const GpuScene& scene) {
       return place[mesh.triangles[a].x] < place[mesh.triangles[b].x];
     });
   }
-  std::vector<glm::uvec4> quads;
-  std::vector<glm::uvec2> ids;
+  const Scene& s = scene.scene();
+  std::uint32_t first = ~0u, last = 0;
+  for (const std::uint32_t q : order)
+    for (int i = 0; i < 4; ++i) {
+      first = std::min(first, mesh.quads[q][i]);
+      last = std::max(last, mesh.quads[q][i]);
+    }
+  if (order.empty()) first = 0;
+  std::vector<RasterQuad> quads;
   quads.reserve(order.size());
-  ids.reserve(order.size());
   for (const std::uint32_t q : order) {
-    quads.push_back(mesh.quads[q]);
-    ids.push_back(mesh.triangles[q]);
-    if (mesh.triangles[q].y == QuadMesh::noTriangle) ++degenerateQuads_;
+    const glm::uvec4 corners = mesh.quads[q];
+    const glm::uvec2 ids = mesh.triangles[q];
+    bool white = true;
+    for (int i = 0; i < 4; ++i) white = white && s.vertices[corners[i]].color == 0xffffffffu;
+    quads.push_back({.corners = corners - first,
+                     .ids = {ids.x, ids.y},
+                     .material = s.vertices[corners.x].material,
+                     .flags = white ? 0u : TRIANGLE_COLORED});
+    if (ids.y == QuadMesh::noTriangle) ++degenerateQuads_;
   }
   quadCount_ = std::uint32_t(quads.size());
   quads_ = uploadBuffer(device_, memory_, "quads", quads);
-  quadIds_ = uploadBuffer(device_, memory_, "quad ids", ids);
+  vertexCount_ = order.empty() ? 0 : last - first + 1;
+  vertices_ = scene.vertices().address() + std::uint64_t(first) * sizeof(Vertex);
+  onScreen_ = Buffer(device_, memory_, "vertices on the screen",
+                     std::max<std::uint64_t>(vertexCount_, 1) * sizeof(ScreenVertex));
 }
 
-void FrontEnd::makeRoomForQuads(std::uint64_t quads) {
-  const std::uint64_t room = std::max<std::uint64_t>(quads, 1);
-  for (Buffer* buffer : {&triangles_, &shading_, &attributes_, &quadBins_}) *buffer = Buffer();
-  triangles_ = Buffer(device_, memory_, "triangle coverage", room * 2 * sizeof(RasterTriangle));
-  shading_ = Buffer(device_, memory_, "triangle planes", room * 2 * sizeof(ShadeTriangle));
-  attributes_ = Buffer(device_, memory_, "quad attributes",
-                       (options_.attributes ? room : 1) * sizeof(QuadAttributes));
-  quadBins_ = Buffer(device_, memory_, "quad bins", room * sizeof(BinBox));
-  quadCapacity_ = std::uint32_t(room);
+void FrontEnd::makeRoomForSmall(std::uint64_t quads) {
+  smallCapacity_ = std::uint32_t(std::max<std::uint64_t>(quads, 1));
+  smallQuads_ = Buffer();
+  smallQuads_ = Buffer(device_, memory_, "small quads", smallCapacity_ * sizeof(SmallQuad));
 }
 
-void FrontEnd::makeRoomForIrregular(std::uint64_t triangles) {
-  if (triangles > MAX_IRREGULAR)
-    fail<DeviceError>(
-        "{} triangles cross the near plane or reach far beyond the screen: more than {}", triangles,
-        MAX_IRREGULAR);
+void FrontEnd::makeRoomForLarge(std::uint64_t triangles) {
+  largeCapacity_ = std::uint32_t(triangles);
+  large_ = Buffer();
+  large_ = Buffer(device_, memory_, "large triangles", triangles * sizeof(std::uint32_t));
+}
+
+void FrontEnd::makeRoomForIrregular(std::uint64_t quads) {
+  irregularCapacity_ = std::uint32_t(quads);
   irregular_ = Buffer();
   irregular_ =
-      Buffer(device_, memory_, "irregular triangles", triangles * sizeof(IrregularTriangle));
-  irregularCapacity_ = std::uint32_t(triangles);
+      Buffer(device_, memory_, "irregular triangles", quads * 2 * sizeof(IrregularTriangle));
 }
 
 void FrontEnd::makeRoomForEntries(std::uint64_t entries) {
@@ -109,20 +130,21 @@ void FrontEnd::makeRoomForEntries(std::uint64_t entries) {
 }
 
 RasterPush FrontEnd::addresses(const Frame& frame) const {
-  return {.frame = frame.constants,
-          .quads = quads_.address(),
-          .quadIds = quadIds_.address(),
-          .triangles = triangles_.address(),
-          .irregular = irregular_.address(),
-          .shading = shading_.address(),
-          .attributes = attributes_.address(),
-          .quadBins = quadBins_.address(),
+  return {.mesh = {.quads = quads_.address(),
+                   .vertices = vertices_,
+                   .onScreen = onScreen_.address(),
+                   .irregular = irregular_.address()},
+          .frame = frame.constants,
+          .smallQuads = smallQuads_.address(),
+          .large = large_.address(),
           .bins = bins_.address(),
           .entries = entries_.address(),
           .parts = parts_.address(),
           .counters = counters_.address(),
           .quadCount = quadCount_,
-          .quadCapacity = quadCapacity_,
+          .vertexCount = vertexCount_,
+          .smallCapacity = smallCapacity_,
+          .largeCapacity = largeCapacity_,
           .irregularCapacity = irregularCapacity_,
           .entryCapacity = entryCapacity_,
           .backFaceCulling = options_.backFaceCulling,
@@ -141,13 +163,15 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     std::vector<const Buffer*> zeroed = {&bins_, &counters_};
     zeroed.insert(zeroed.end(), alsoZeroed);
     zeroFill_.record(frame.commands, zeroed);
+    run(project_, [&] { dispatchEach(frame.commands, vertexCount_); });
     frame.barrier(compute, compute);
     frame.finishTarget(0);  // beside steps that leave room on a GPU
-    run(setup_, [&] {
-      const std::uint32_t groups = divideUp(std::max(quadCount_, 1u), SETUP_GROUP);
-      frame.commands.dispatch(std::min(groups, MAX_GROUPS), divideUp(groups, MAX_GROUPS), 1);
-    });
+    run(setup_, [&] { dispatchEach(frame.commands, quadCount_); });
     frame.barrier(compute, compute);
+    if (irregularSeen_) {
+      run(irregularQuads_, [&] { frame.commands.dispatch(IRREGULAR_GROUPS, 1, 1); });
+      frame.barrier(compute, compute);
+    }
   });
   frame.stage("binning", [&] {
     if (largeSeen_) {
@@ -176,13 +200,15 @@ std::uint32_t FrontEnd::partCapacity() const {
 
 bool FrontEnd::grow() {
   const RasterCounters& c = counted();
-  const bool lacked = c.largeQuads > 0 && !largeSeen_;
-  largeSeen_ = largeSeen_ || lacked;
+  const bool lacked =
+      (c.largeTriangles > 0 && !largeSeen_) || (c.irregularQuads > 0 && !irregularSeen_);
+  irregularSeen_ = irregularSeen_ || c.irregularQuads > 0;
+  largeSeen_ = largeSeen_ || c.largeTriangles > 0 || irregularSeen_;
   if (c.ready != 0) return lacked;
-  const std::uint64_t quads = std::uint64_t(c.smallQuads) + c.largeQuads;
-  if (quads > quadCapacity_) makeRoomForQuads(std::min(withSlack(quads), quadCount_));
-  if (c.irregularTriangles > irregularCapacity_)
-    makeRoomForIrregular(std::uint64_t(c.irregularTriangles) * 2);
+  if (c.smallQuads > smallCapacity_)
+    makeRoomForSmall(std::min<std::uint64_t>(withSlack(c.smallQuads), quadCount_));
+  if (c.largeTriangles > largeCapacity_) makeRoomForLarge(withSlack(c.largeTriangles));
+  if (c.irregularQuads > irregularCapacity_) makeRoomForIrregular(withSlack(c.irregularQuads));
   if (c.entries > entryCapacity_) makeRoomForEntries(withSlack(c.entries));
   return true;
 }
@@ -205,8 +231,8 @@ void FrontEnd::addCounters(std::map<std::string, std::uint64_t>& counters) const
 }
 
 void FrontEnd::poison(const Commands& commands, std::uint32_t pattern) const {
-  for (const Buffer* buffer : {&triangles_, &irregular_, &shading_, &attributes_, &quadBins_,
-                               &bins_, &entries_, &parts_, &counters_})
+  for (const Buffer* buffer : {&onScreen_, &irregular_, &smallQuads_, &large_, &bins_, &entries_,
+                               &parts_, &counters_})
     fillBuffer(commands, *buffer, pattern);
 }
 

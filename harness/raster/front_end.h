@@ -11,16 +11,16 @@
 namespace oitlab::raster {
 
 /// The first two stages of a compute rasterizer after LucidRaster (Jakubowski 2024, section 2):
-/// quad setup and binning. From the scene's transparent triangles it leaves, for one camera, what
-/// rasterization and shading need of each visible triangle, and for each 32 x 32 bin the list of
-/// its primitives. It knows nothing of blending: what becomes of the fragments is the method's.
+/// quad setup and binning. From the scene's transparent triangles it leaves, for one camera, the
+/// vertices on the screen, and for each 32 x 32 bin the list of its primitives. What rasterization
+/// and shading need of a triangle shaders work out from these (shaders/raster/records.glsl). It
+/// knows nothing of blending: what becomes of the fragments is the method's.
 ///
 /// Memory follows the scene: buffers grow by what was counted, and the frame is recorded again.
 class FrontEnd {
  public:
   struct Options {
     bool backFaceCulling = false;
-    bool attributes = true;  ///< of quads: textures or vertex colours are there to be kept
   };
 
   /// `memory` must outlive this and lists the buffers; `scene` and `target` too. Takes the scene's
@@ -55,6 +55,9 @@ class FrontEnd {
   std::uint32_t bins() const { return binColumns_ * binRows_; }
   std::uint32_t inputQuads() const { return quadCount_; }
 
+  /// Some frame has had triangles that cannot be snapped.
+  bool hasIrregular() const { return irregularSeen_; }
+
   /// Parts of high bins that there is room for: valid until grow().
   std::uint32_t partCapacity() const;
 
@@ -63,20 +66,23 @@ class FrontEnd {
 
  private:
   void makeQuads(const GpuScene& scene);
-  void makeRoomForQuads(std::uint64_t quads);
-  void makeRoomForIrregular(std::uint64_t triangles);
+  void makeRoomForSmall(std::uint64_t quads);
+  void makeRoomForLarge(std::uint64_t triangles);
+  void makeRoomForIrregular(std::uint64_t quads);
   void makeRoomForEntries(std::uint64_t entries);
 
   const Device& device_;
   MemoryLedger& memory_;
   Options options_;
-  std::uint32_t quadCount_ = 0, degenerateQuads_ = 0;
+  std::uint32_t quadCount_ = 0, degenerateQuads_ = 0, vertexCount_ = 0;
+  std::uint64_t vertices_ = 0;  // address of the first that a quad has
   std::uint32_t binColumns_, binRows_;
-  std::uint32_t quadCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
-  bool largeSeen_ = false;  // the steps for large quads are recorded from the first that is seen
+  std::uint32_t smallCapacity_ = 0, largeCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
+  // The steps for these are recorded from the first that is seen.
+  bool largeSeen_ = false, irregularSeen_ = false;
   ZeroFill zeroFill_;
-  Pipeline setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
-  Buffer quads_, quadIds_, triangles_, irregular_, shading_, attributes_, quadBins_;
+  Pipeline project_, setup_, irregularQuads_, countLarge_, offsets_, writeSmall_, writeLarge_;
+  Buffer quads_, onScreen_, irregular_, smallQuads_, large_;
   Buffer bins_, entries_, parts_, counters_, readback_;
 };
 

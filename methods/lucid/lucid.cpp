@@ -7,6 +7,8 @@
 //   buffers   what is kept between their steps
 #include "lucid/lucid_types.h"
 
+#include <functional>
+
 #include "lucid/buffers.h"
 #include "lucid/programs.h"
 #include "method/method.h"
@@ -42,10 +44,12 @@ class Lucid : public Method {
     parameters_ = parameters;
     frontEnd_ = std::make_unique<raster::FrontEnd>(
         device, scene, target, memory_,
-        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling"),
-                                  .attributes = hasAttributes(scene.scene())});
-    programs_ = Programs(device, scene.scene(), scene.opaqueCount() > 0,
-                         formatName(target.format()), parameters);
+        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
+    makePrograms_ = [this, &scene, format = formatName(target.format())](bool hasIrregular) {
+      programs_ = Programs(*device_, scene.scene(), scene.opaqueCount() > 0, hasIrregular, format,
+                           parameters_);
+    };
+    makePrograms_(false);
     buffers_ =
         std::make_unique<Buffers>(device, memory_, std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS);
     makeRoomForParts();
@@ -80,7 +84,7 @@ class Lucid : public Method {
       if (needed_.longLists) run(programs_.highRaster, high);
     });
     frame.stage("repair", [&] {
-      if (needed_.repair) recordRepair(frame, front, push);
+      if (needed_.repair) recordRepair(frame, push);
     });
     frame.barrier(compute, Stage::eTransfer);
     frontEnd_->recordReadback(frame);
@@ -94,6 +98,7 @@ class Lucid : public Method {
     bool again = findNeeded(c);
     if (frontEnd_->grow()) {
       makeRoomForParts();
+      if (frontEnd_->hasIrregular() && !programs_.irregular) makePrograms_(true);
       return {.recordAgain = true};
     }
     if (c.triHalfBlocks > buffers_->listCapacity) {
@@ -163,9 +168,7 @@ class Lucid : public Method {
 
   void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
     const auto compute = Stage::eComputeShader;
-    const BlocksPush push{.triangles = front.triangles,
-                          .irregular = front.irregular,
-                          .shading = front.shading,
+    const BlocksPush push{.mesh = front.mesh,
                           .entries = front.entries,
                           .parts = front.parts,
                           .rasterCounters = front.counters,
@@ -196,10 +199,8 @@ class Lucid : public Method {
     // so.
     if (repairs()) flags |= REPAIR;
     if (parameters_.flag("visualize_errors")) flags |= SHOW_ERRORS;
-    return {.frame = front.frame,
-            .irregular = front.irregular,
-            .shading = front.shading,
-            .attributes = front.attributes,
+    return {.mesh = front.mesh,
+            .frame = front.frame,
             .list = buffers_->list.address(),
             .keys = buffers_->keys.address(),
             .blocks = buffers_->blocks.address(),
@@ -213,14 +214,10 @@ class Lucid : public Method {
             .flags = flags};
   }
 
-  void recordRepair(const Frame& frame, const raster::RasterPush& front,
-                    const BlendPush& lucid) const {
+  void recordRepair(const Frame& frame, const BlendPush& lucid) const {
     const auto compute = Stage::eComputeShader;
-    RepairPush push{.frame = lucid.frame,
-                    .triangles = front.triangles,
-                    .irregular = lucid.irregular,
-                    .shading = lucid.shading,
-                    .attributes = lucid.attributes,
+    RepairPush push{.mesh = lucid.mesh,
+                    .frame = lucid.frame,
                     .list = lucid.list,
                     .repairs = lucid.repairs,
                     .counters = lucid.counters,
@@ -260,6 +257,7 @@ class Lucid : public Method {
   Parameters parameters_;
   std::unique_ptr<raster::FrontEnd> frontEnd_;
   std::unique_ptr<Buffers> buffers_;
+  std::function<void(bool hasIrregular)> makePrograms_;
   Programs programs_;
   Needed needed_;
   std::uint32_t deepRounds_ = 1;

@@ -31,18 +31,19 @@ bool isSmooth(const Scene& scene) {
   });
 }
 
-}  // namespace
-
 bool hasAttributes(const Scene& scene) {
   return hasTextures(scene) || hasColors(scene);
 }
+
+}  // namespace
 
 bool verifiesLoops(const Device& device) {
   return device.info().isCpu();
 }
 
-Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
-                   const std::string& targetFormat, const Parameters& parameters) {
+Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
+                   const std::string& targetFormat, const Parameters& parameters)
+    : irregular(hasIrregular) {
   const bool isWide = device.info().subgroupSize >= 32;
   ordersFirst = parameters.flag("ordered_first");
   // Half-blocks that a workgroup works on side by side. They wait for each other, but each
@@ -56,6 +57,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
       {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
       {"TARGET_FORMAT", targetFormat},
       {"HAS_OPAQUE", hasOpaque ? "1" : "0"},
+      {"HAS_IRREGULAR", hasIrregular ? "1" : "0"},
       {"HAS_TEXTURES", hasTextures(scene) ? "1" : "0"},
       {"HAS_GRADIENTS", hasGradients(scene) ? "1" : "0"},
       {"HAS_ATTRIBUTES", hasAttributes(scene) ? "1" : "0"},
@@ -87,6 +89,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
   for (std::size_t pass = 0; pass < blocks.size(); ++pass)
     blocks[pass] = Pipeline::compute(device, "lucid/blocks.comp",
                                      {{"PASS", std::to_string(pass)},
+                                      {"HAS_IRREGULAR", common.at("HAS_IRREGULAR")},
                                       {"LOW_TEAMS", lowTeams},
                                       {"ORDERED_TEAMS", orderedTeams},
                                       {"GROUP", group},
@@ -101,6 +104,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque,
   deepCapture = Pipeline::compute(device, "lucid/deep_capture.comp",
                                   {{"TARGET_FORMAT", targetFormat},
                                    {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
+                                   {"HAS_IRREGULAR", common.at("HAS_IRREGULAR")},
                                    {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
                                    {"HAS_GRADIENTS", common.at("HAS_GRADIENTS")},
                                    {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")},

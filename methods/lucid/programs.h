@@ -9,9 +9,6 @@
 
 namespace oitlab::lucid {
 
-/// Textures or vertex colours: what the front end then keeps of each quad.
-bool hasAttributes(const Scene& scene);
-
 /// llvmpipe ends long loops early and in silence: there the turns are counted.
 bool verifiesLoops(const Device& device);
 
@@ -20,9 +17,12 @@ bool verifiesLoops(const Device& device);
 struct Programs {
   Programs() = default;
 
-  /// `hasOpaque`: the scene has opaque triangles. Throws DeviceError when the driver refuses one.
-  Programs(const Device& device, const Scene& scene, bool hasOpaque,
+  /// `hasOpaque`: the scene has opaque triangles. `hasIrregular`: frames have triangles that cannot
+  /// be snapped. Throws DeviceError when the driver refuses one.
+  Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
            const std::string& targetFormat, const Parameters& parameters);
+
+  bool irregular = false;
 
   /// Short lists are blended with a depth filter of 1 first.
   bool ordersFirst = false;

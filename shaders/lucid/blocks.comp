@@ -38,7 +38,7 @@ ivec2 cornerIn(ivec2 region, uint block) {
 void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
   push.keys.at[starts[block] + place] =
-      sortKey(loadShading(push.shading, slot), cornerIn(region, block), mask);
+      sortKey(loadShading(push.mesh, slot), cornerIn(region, block), mask);
 }
 
 // `number`: of the triangle in its part.
@@ -70,8 +70,7 @@ void walk(bool write, Span span) {
   for (uint i = gl_LocalInvocationIndex; i < strips; i += GROUP) {
     const uint number = triangleOf(i), slot = slots[number], begin = begins[number];
     const int strip = int(bitfieldExtract(begin, 0, FIRST_STRIP_BITS) + i - (begin >> FIRST_STRIP_BITS));
-    const RasterTriangle t = loadTriangle(push.triangles, slot);
-    takeStrip(write, span, slot, number, strip, coverStrip(t, span, strip, slot));
+    takeStrip(write, span, slot, number, strip, coverStrip(span, strip, slot));
   }
 }
 

@@ -30,7 +30,7 @@ void capture(uint number) {
     Node node;
     node.color = kept ? color : vec4(-1.0);  // cut out: counted, not blended
     node.depth = invW;
-    node.id = idOfTriangle(push.triangles, item.triangle);
+    node.id = idOfTriangle(push.mesh, item.triangle);
     node.next = atomicExchange(push.deepPixels.at[number].head, index);
     push.nodes.at[index] = node;
   }

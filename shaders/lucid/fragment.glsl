@@ -81,20 +81,14 @@ float opaqueDepthAt(ivec2 place) {
 #define PREPARED_MATERIAL_SHIFT 4
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
-vec2 pick(vec4 a, vec4 b, uint i) { return i == 0u ? a.xy : i == 1u ? a.zw : i == 2u ? b.xy : b.zw; }
 
 Prepared prepare(uint slot, ivec2 corner) {
-  const ShadeTriangle s = loadShading(push.shading, slot);
+  const ShadeTriangle s = loadShading(push.mesh, slot);
   const GpuMaterial material = push.frame.c.materials.at[s.material];
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
   const vec2 bounds = boundsOfInvW(s);
-  vec2 weights = vec2(0.0);
-  if (s.minInvW < 0.0) {
-    const uint index = s.flags >> TRIANGLE_INDEX_SHIFT;
-    weights = vec2(push.irregular.at[index].b1, push.irregular.at[index].b2);
-  }
-  precise const float b1 = fma(s.b1Slope.x, d.x, fma(s.b1Slope.y, d.y, weights.x));
-  precise const float b2 = fma(s.b2Slope.x, d.x, fma(s.b2Slope.y, d.y, weights.y));
+  precise const float b1 = fma(s.b1Slope.x, d.x, fma(s.b1Slope.y, d.y, s.weights.x));
+  precise const float b2 = fma(s.b2Slope.x, d.x, fma(s.b2Slope.y, d.y, s.weights.y));
   const vec3 n0 = unpackNormal(s.normals[0]);
   precise const vec3 n1 = unpackNormal(s.normals[1]) - n0;
   precise const vec3 n2 = unpackNormal(s.normals[2]) - n0;
@@ -105,14 +99,15 @@ Prepared prepare(uint slot, ivec2 corner) {
   p.color = material.baseColor;
   p.uvs = p.more = vec4(0.0);
 #if HAS_ATTRIBUTES
-  if ((s.flags & (TRIANGLE_COLORED | TRIANGLE_TEXTURED)) != 0u) {
+  if ((s.flags & TRIANGLE_COLORED) != 0u || material.atlas != 0u) {
     const uint c = s.flags >> TRIANGLE_CORNER_SHIFT;
-    const uint c0 = c & 3u, c1 = (c >> 2) & 3u, c2 = (c >> 4) & 3u;
-    const QuadAttributes q = push.attributes.at[slot / 2u];
-    const uvec3 colors = uvec3(pick(q.colors, c0), pick(q.colors, c1), pick(q.colors, c2));
-    const vec2 uv0 = pick(q.uvs01, q.uvs23, c0);
-    p.uvs = vec4(uv0, pick(q.uvs01, q.uvs23, c1) - uv0);
-    p.more = vec4(pick(q.uvs01, q.uvs23, c2) - uv0, uintBitsToFloat(colors.yz));
+    const uvec4 quad = push.mesh.quads.at[s.quad].corners;
+    const vec4 v0 = push.mesh.vertices.at[pick(quad, c & 3u)].uvColorMaterial;
+    const vec4 v1 = push.mesh.vertices.at[pick(quad, (c >> 2) & 3u)].uvColorMaterial;
+    const vec4 v2 = push.mesh.vertices.at[pick(quad, (c >> 4) & 3u)].uvColorMaterial;
+    const uvec3 colors = floatBitsToUint(vec3(v0.z, v1.z, v2.z));
+    p.uvs = vec4(v0.xy, v1.xy - v0.xy);
+    p.more = vec4(v2.xy - v0.xy, uintBitsToFloat(colors.yz));
     p.firstColor = colors.x;
     if (colors.y != colors.x || colors.z != colors.x) {
       bits |= PREPARED_COLORED;

@@ -108,9 +108,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuf
 #endif
 
 struct BlocksPush {
-  ADDRESS_OF(RasterTriangleBuffer) triangles;
-  ADDRESS_OF(IrregularBuffer) irregular;
-  ADDRESS_OF(ShadeTriangleBuffer) shading;
+  Mesh mesh;
   ADDRESS_OF(WordBuffer) entries;
   ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;
@@ -127,10 +125,8 @@ struct BlocksPush {
 };
 
 struct BlendPush {
+  Mesh mesh;
   ADDRESS_OF(FrameBuffer) frame;
-  ADDRESS_OF(IrregularBuffer) irregular;
-  ADDRESS_OF(ShadeTriangleBuffer) shading;
-  ADDRESS_OF(AttributeBuffer) attributes;
   ADDRESS_OF(TriHalfBlockBuffer) list;
   ADDRESS_OF(WordBuffer) keys;
   ADDRESS_OF(HalfBlockBuffer) blocks;
@@ -145,11 +141,8 @@ struct BlendPush {
 };
 
 struct RepairPush {
+  Mesh mesh;
   ADDRESS_OF(FrameBuffer) frame;
-  ADDRESS_OF(RasterTriangleBuffer) triangles;
-  ADDRESS_OF(IrregularBuffer) irregular;
-  ADDRESS_OF(ShadeTriangleBuffer) shading;
-  ADDRESS_OF(AttributeBuffer) attributes;
   ADDRESS_OF(TriHalfBlockBuffer) list;
   ADDRESS_OF(PixelJobBuffer) repairs;
   ADDRESS_OF(LucidCounterBuffer) counters;

@@ -19,11 +19,11 @@ shared uint found, walked;
 shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fragment out
 
 HalfBlock block;
-uint idOfKey(uvec2 key) { return idOfTriangle(push.triangles, push.list.at[block.first + key.y].x); }
+uint idOfKey(uvec2 key) { return idOfTriangle(push.mesh, push.list.at[block.first + key.y].x); }
 
 // 1 / w at a pixel, the same bits as in blend.comp.
 float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
-  const ShadeTriangle s = loadShading(push.shading, triangle);
+  const ShadeTriangle s = loadShading(push.mesh, triangle);
   return boundedInvW(originInvW(s, corner), s, pixel);
 }
 

@@ -5,7 +5,6 @@
 
 #include "lucid/lucid_types.h"
 #include "raster/coverage.glsl"
-#include "raster/records.glsl"
 
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
@@ -31,12 +30,11 @@ shared uint strips;
 
 // First strip that the triangle reaches in the bin, and how many.
 uvec2 stripsOf(Span span, uint slot) {
-  const RasterTriangle t = loadTriangle(push.triangles, slot);
-  if (t.flags == 0u) return uvec2(0u);
   ivec4 box = ivec4(ivec2(0), span.extent - 1);
-  if ((t.flags & TRIANGLE_IRREGULAR) == 0u) {
-    const ivec4 own = snappedBox(t.v01.xy, t.v01.zw, t.v2) - span.region.xyxy;
-    box = ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
+  if (HAS_IRREGULAR == 0 || !isIrregular(slot)) {
+    const RasterTriangle t = loadTriangle(push.mesh, slot);
+    const ivec4 own = snappedBox(t.v[0], t.v[1], t.v[2]) - span.region.xyxy;
+    box = t.isEmpty ? emptyBox : ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
   }
   if (isEmpty(box)) return uvec2(0u);
   return uvec2(uint(box.y) / HALF_BLOCK_HEIGHT, uint(box.w) / HALF_BLOCK_HEIGHT - uint(box.y) / HALF_BLOCK_HEIGHT + 1u);
@@ -76,15 +74,17 @@ void findStrips(Span span, bool walks) {
 }
 
 // Coverage of a strip's half-blocks: a byte of each row is one of each mask.
-uvec4 coverStrip(RasterTriangle t, Span span, int strip, uint slot) {
+uvec4 coverStrip(Span span, int strip, uint slot) {
   const uint onScreen = bitsBetween(0, span.extent.x - 1);
   uvec4 rows;
-  if ((t.flags & TRIANGLE_IRREGULAR) != 0u) {
+#if HAS_IRREGULAR
+  if (isIrregular(slot)) {
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
-      rows[row] = irregularRow(push.triangles, push.irregular, push.shading, slot, t.flags, push.near,
-                               span.region, 4 * strip + row);
-  } else {
-    const RegionEdges edges = regionEdges(t, span.region);
+      rows[row] = irregularRow(push.mesh.irregular, slot, push.near, span.region, 4 * strip + row);
+  } else
+#endif
+  {
+    const RegionEdges edges = regionEdges(loadTriangle(push.mesh, slot), span.region);
     [[unroll]] for (int row = 0; row < 4; ++row) rows[row] = rowCoverage(edges, 4 * strip + row);
   }
   uvec4 masks = uvec4(0u);

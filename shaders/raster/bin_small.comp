@@ -10,21 +10,21 @@ layout(push_constant, scalar) uniform Push { RasterPush push; };
 void main() {
   const uint columns = (push.frame.c.size.x + BIN_SIZE - 1u) / BIN_SIZE;
   const uint quads = push.counters.c.smallQuads, stride = push.counters.c.small.x * SETUP_GROUP;
-  for (uint quad = gl_GlobalInvocationID.x; subgroupAny(quad < quads); quad += stride) {
-    BinBox box = BinBox(0u, 0u);
-    if (quad < quads) box = push.quadBins.at[quad];
-    const uvec2 first = uvec2(box.first & 0xffffu, box.first >> 16);
-    const uvec2 extent = uvec2(box.last & 0xffffu, box.last >> 16) - first + 1u;
+  for (uint i = gl_GlobalInvocationID.x; subgroupAny(i < quads); i += stride) {
+    uvec2 item = uvec2(0u);
+    if (i < quads) item = push.smallQuads.at[i];
+    uvec2 first, extent;
+    unpackBins(item.y, first, extent);
     for (uint k = 0u; k < SMALL_QUAD_BINS; ++k) {
-      const bool valid = quad < quads && k < extent.x * extent.y;
+      const bool valid = k < extent.x * extent.y;
       if (!subgroupAny(valid)) break;
-      const uint bin = (first.y + k / extent.x) * columns + first.x + k % extent.x;
+      const uint bin = (first.y + k / max(extent.x, 1u)) * columns + first.x + k % max(extent.x, 1u);
       const Together t = gather(bin, valid);
       uint place = 0u;
       if (t.count > 0u)
         place = push.bins.at[bin].quadOffset + atomicAdd(push.bins.at[bin].quadCursor, t.count);
       place = subgroupShuffle(place, t.leader) + t.rank;
-      if (valid) push.entries.at[place] = quad;
+      if (valid) push.entries.at[place] = item.x;
     }
   }
 }

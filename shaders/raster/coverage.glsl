@@ -3,7 +3,6 @@
 #ifndef OITLAB_RASTER_COVERAGE_GLSL
 #define OITLAB_RASTER_COVERAGE_GLSL
 
-#include "raster/project.glsl"
 #include "raster/records.glsl"
 
 // c + a * i + b * j >= 0 inside, i and j pixels from the region's first sample: the edge function in
@@ -66,9 +65,9 @@ struct RegionEdges {
 
 RegionEdges regionEdges(RasterTriangle t, ivec2 region) {
   RegionEdges r;
-  r.edge[0] = makeEdge(t.v01.xy, t.v01.zw, region);
-  r.edge[1] = makeEdge(t.v01.zw, t.v2, region);
-  r.edge[2] = makeEdge(t.v2, t.v01.xy, region);
+  r.edge[0] = makeEdge(t.v[0], t.v[1], region);
+  r.edge[1] = makeEdge(t.v[1], t.v[2], region);
+  r.edge[2] = makeEdge(t.v[2], t.v[0], region);
   r.inverseA = 1.0 / vec3(r.edge[0].a, r.edge[1].a, r.edge[2].a);
   return r;
 }
@@ -88,23 +87,16 @@ bool comesBefore(vec3 a, vec3 b) {
   return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
 }
 
-ivec2 snappedVertex(RasterTriangleBuffer triangles, uint slot, int k) {
-  if (k == 2) return triangles.at[slot].word[1].xy;
-  const ivec4 v01 = triangles.at[slot].word[0];
-  return k == 0 ? v01.xy : v01.zw;
-}
-
 // Vertices are read where they are needed: few triangles are irregular, and registers kept for them
 // would be taken from all.
-uint irregularRow(RasterTriangleBuffer triangles, IrregularBuffer irregular, ShadeTriangleBuffer shading,
-                  uint slot, uint flags, float near, ivec2 region, int j) {
-  const uint index = flags >> TRIANGLE_INDEX_SHIFT;
+uint irregularRow(IrregularBuffer irregular, uint slot, float near, ivec2 region, int j) {
+  const uint index = slot & ~IRREGULAR;
   uint row = 0xffffffffu;
   [[dont_unroll]] for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
-    const uint both = (1u << k | 1u << next) << TRIANGLE_SNAPPED_SHIFT;
-    if ((flags & both) == both) {
-      const Edge e = makeEdge(snappedVertex(triangles, slot, k), snappedVertex(triangles, slot, next), region);
+    const uint both = 1u << k | 1u << next;
+    if ((irregular.at[index].snaps & both) == both) {
+      const Edge e = makeEdge(irregular.at[index].snapped[k], irregular.at[index].snapped[next], region);
       int low = 0, high = 31;
       narrow(e, 1.0 / float(e.a), j, low, high);
       row &= bitsBetween(low, high);
@@ -119,7 +111,7 @@ uint irregularRow(RasterTriangleBuffer triangles, IrregularBuffer irregular, Sha
       }
     }
   }
-  const ShadeTriangle planes = loadShading(shading, slot);
+  const ShadeTriangle planes = irregular.at[index].shading;
   // Nothing nearer than the near plane (or behind the eye) is drawn.
   const float dy = float(region.y + j) + 0.5 - planes.anchor.y;
   [[dont_unroll]] for (int i = 0; i < 32; ++i) {

@@ -4,21 +4,27 @@
 
 #include "raster/project.glsl"
 
+// A corner as the planes want it: a ScreenVertex in one word, and its number in the quad.
+struct PlaneCorner {
+  vec4 vertex;
+  uint number;
+};
+
 // Nearer first, then by place: an order of the corners that does not depend on the order in which
 // the triangle lists them, so that triangles on the same three points get the same depths.
-bool comesFirst(Corner a, Corner b) {
-  if (a.invW != b.invW) return a.invW > b.invW;
-  if (a.pixel.x != b.pixel.x) return a.pixel.x < b.pixel.x;
-  return a.pixel.y < b.pixel.y;
+bool comesFirst(PlaneCorner a, PlaneCorner b) {
+  if (a.vertex.z != b.vertex.z) return a.vertex.z > b.vertex.z;
+  if (a.vertex.x != b.vertex.x) return a.vertex.x < b.vertex.x;
+  return a.vertex.y < b.vertex.y;
 }
 
-void swapCorners(inout Corner a, inout Corner b, inout uint ia, inout uint ib) {
-  const Corner c = a;
-  a = b;
-  b = c;
-  const uint i = ia;
-  ia = ib;
-  ib = i;
+void order(inout PlaneCorner a, inout PlaneCorner b) {
+  const bool swap = comesFirst(b, a);
+  const PlaneCorner c = a;
+  a.vertex = swap ? b.vertex : a.vertex;
+  a.number = swap ? b.number : a.number;
+  b.vertex = swap ? c.vertex : b.vertex;
+  b.number = swap ? c.number : b.number;
 }
 
 // Gradient of a function that is 0 at the first corner, f1 and f2 at the others; d1 and d2 lead to
@@ -30,33 +36,34 @@ vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float overArea) {
   return g;
 }
 
-// The planes of three corners that snap; the rest of the record is left open. `corners`: their numbers
-// in the quad, reordered as the planes want it.
-ShadeTriangle regularPlanes(Corner a, Corner b, Corner c, inout uvec3 corners) {
-  if (comesFirst(b, a)) swapCorners(a, b, corners.x, corners.y);
-  if (comesFirst(c, b)) swapCorners(b, c, corners.y, corners.z);
-  if (comesFirst(b, a)) swapCorners(a, b, corners.x, corners.y);
+// The planes of three corners that snap, which it puts in order; the rest is left open.
+ShadeTriangle regularPlanes(inout PlaneCorner first, inout PlaneCorner second, inout PlaneCorner third) {
+  order(first, second);
+  order(second, third);
+  order(first, second);
+  const vec3 a = first.vertex.xyz, b = second.vertex.xyz, c = third.vertex.xyz;
   ShadeTriangle t;
-  precise const vec2 d1 = b.pixel - a.pixel;
-  precise const vec2 d2 = c.pixel - a.pixel;
+  precise const vec2 d1 = b.xy - a.xy;
+  precise const vec2 d2 = c.xy - a.xy;
   precise const float area = d1.x * d2.y - d1.y * d2.x;
-  t.anchor = a.pixel;
-  t.minInvW = c.invW;
-  t.invW = a.invW;
+  t.anchor = a.xy;
+  t.minInvW = c.z;
+  t.invW = a.z;
+  t.weights = vec2(0.0);
   // Thinner than rounding: the nearest corner's attributes throughout.
   const bool flat_ = area == 0.0;
   precise const float overArea = 1.0 / area;
-  precise const float rise1 = b.invW - a.invW;
-  precise const float rise2 = c.invW - a.invW;
+  precise const float rise1 = b.z - a.z;
+  precise const float rise2 = c.z - a.z;
   t.invWSlope = flat_ ? vec2(0.0) : gradient(d1, d2, rise1, rise2, overArea);
-  t.b1Slope = flat_ ? vec2(0.0) : gradient(d1, d2, b.invW, 0.0, overArea);
-  t.b2Slope = flat_ ? vec2(0.0) : gradient(d1, d2, 0.0, c.invW, overArea);
+  t.b1Slope = flat_ ? vec2(0.0) : gradient(d1, d2, b.z, 0.0, overArea);
+  t.b2Slope = flat_ ? vec2(0.0) : gradient(d1, d2, 0.0, c.z, overArea);
   return t;
 }
 
 // Of homogeneous corners, wherever they are: the inverse of the matrix (a b c) (Olano and Greer
-// 1997). `anchor`: a pixel that the triangle covers or is near. `atAnchor`: both weights there.
-ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor, out vec2 atAnchor) {
+// 1997). `anchor`: a pixel that the triangle covers or is near.
+ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor) {
   a.xy -= anchor * a.z;
   b.xy -= anchor * b.z;
   c.xy -= anchor * c.z;
@@ -70,7 +77,7 @@ ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor, out vec2 atAn
   t.invWSlope = invW.xy;
   t.b1Slope = b1.xy;
   t.b2Slope = b2.xy;
-  atAnchor = vec2(b1.z, b2.z);
+  t.weights = vec2(b1.z, b2.z);
   return t;
 }
 

@@ -9,7 +9,6 @@
 namespace oitlab::raster {
 using ivec2 = glm::ivec2;
 using uvec3 = glm::uvec3;
-using ivec4 = glm::ivec4;
 using uvec4 = glm::uvec4;
 #endif
 
@@ -21,27 +20,58 @@ using uvec4 = glm::uvec4;
 #define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
 #define LARGE_GROUP 128u         // invocations of a workgroup of bin_large
 #define LARGE_GROUPS 1024u       // of them: enough to fill a large GPU, and quick to start for nothing
+#define IRREGULAR_GROUP 64u      // invocations of a workgroup of irregular.comp
+#define IRREGULAR_GROUPS 64u     // of them
 #define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
-// Flags of a RasterTriangle.
-#define TRIANGLE_VISIBLE 1u
-#define TRIANGLE_IRREGULAR 2u  // a vertex nearer than the near plane or beyond the guard band
-#define TRIANGLE_SNAPPED_SHIFT 2  // 3 bits: the vertex has snapped coordinates
-#define TRIANGLE_CORNER_SHIFT 5   // 3 x 2 bits: which corner of the quad weighs 1 - b1 - b2, b1, b2
-#define TRIANGLE_TEXTURED (1u << 11)  // QuadAttributes::uvs are there
-#define TRIANGLE_COLORED (1u << 12)   // QuadAttributes::colors are there; else all are white
-#define TRIANGLE_INDEX_SHIFT 13       // 19 bits: of the IrregularTriangle
-#define MAX_IRREGULAR (1u << 19)
+// A triangle is named by its slot: quad * 2 + half, half 0 having the corners 0 1 2, half 1 0 2 3. The few
+// that cannot be snapped, a vertex being nearer than the near plane or beyond the guard band, have
+// IRREGULAR | index of an IrregularTriangle.
+#define IRREGULAR 0x80000000u
 
-// The records below travel as whole 16-byte words (records.glsl): loads and stores of 4 bytes would
-// cost a GPU four times the transactions. On an NVIDIA H200 that was two thirds of the setup.
+// Flags of a ShadeTriangle.
+#define TRIANGLE_COLORED 1u      // some corner is not white
+#define TRIANGLE_CORNER_SHIFT 1  // 3 x 2 bits: which corner of the quad weighs 1 - b1 - b2, b1, b2
 
-// Coverage of one triangle, 32 bytes. Snapped vertices in 1/256 pixel, positively oriented.
+// Two triangles that share an edge, of the scene, 32 bytes. Like all that is read often, it travels as
+// whole words of 16 bytes (records.glsl): loads of 4 would cost a GPU four times the transactions.
+struct RasterQuad {
+  uvec4 corners;  // vertices; the last two are the same where there is one triangle only
+  uint ids[2];    // primitive ids of its halves
+  uint material;
+  uint flags;     // TRIANGLE_COLORED
+};
+
+// A vertex on the screen, 16 bytes. All else that rasterization and shading need of a triangle is worked
+// out from three of these wherever it is needed: that is less to read than a record of each triangle
+// would be, since triangles share vertices, and next to nothing to store.
+struct ScreenVertex {
+  vec2 pixel;   // where it is
+  float invW;   // 1 / distance; if it cannot be snapped: 0 nearer than the near plane, else negative
+  uint normal;  // packed
+};
+
+#ifndef __cplusplus
+// Coverage of one triangle: snapped vertices in 1/256 pixel, positively oriented.
 struct RasterTriangle {
-  ivec4 v01;  // vertices 0 and 1
-  ivec2 v2;
-  uint id;  // primitive id
+  ivec2 v[3];
+  bool isEmpty;  // no area
+};
+#endif
+
+// What shading needs of one triangle. Linear on the screen, relative to `anchor`, in pixels: 1 / w and
+// the two barycentric weights over w.
+struct ShadeTriangle {
+  vec2 anchor;
+  float invW;     // at the anchor
+  float minInvW;  // farthest corner; the nearest is invW. Negative: no bounds (irregular)
+  vec2 invWSlope, b1Slope, b2Slope;  // per pixel right, per pixel down
+  vec2 weights;   // b1 and b2 over w at the anchor: 0 for regular triangles, whose anchor is a corner
+  uint normals[3];
+  uint quad;
+  uint id;        // primitive id
+  uint material;
   uint flags;
 };
 
@@ -49,27 +79,10 @@ struct RasterTriangle {
 // 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented, like RasterTriangle.
 struct IrregularTriangle {
   vec3 p[3];
-  float b1, b2;  // at the anchor; 0 for regular triangles, whose anchor is a corner
-};
-
-// What shading needs, 64 bytes. Linear on the screen, relative to `anchor`, in pixels: 1 / w and the
-// two barycentric weights over w.
-struct ShadeTriangle {
-  vec2 anchor;
-  float invW;     // at the anchor
-  float minInvW;  // farthest corner; the nearest is invW. Negative: no bounds (irregular)
-  vec2 invWSlope, b1Slope;  // per pixel right, per pixel down
-  vec2 b2Slope;
-  uint id;        // primitive id
-  uint flags;
-  uint normals[3];
-  uint material;
-};
-
-// Further attributes of a visible quad, 48 bytes, written and read where flags say so.
-struct QuadAttributes {
-  uvec4 colors;
-  vec4 uvs01, uvs23;
+  ivec2 snapped[3];  // where `snaps` has a bit
+  uint snaps;
+  uint firstBin, lastBin;  // of those that it may overlap, x | y << 16
+  ShadeTriangle shading;   // until irregular.comp: just the number of its quad
 };
 
 // The primitives of a bin: quads (small) and single triangles (large), in the list of entries.
@@ -86,10 +99,13 @@ struct Part {
   uint first, quads, triangles;  // the bin's list: quads from `first` on, then triangles
 };
 
-// First and last bin, each x | y << 16.
-struct BinBox {
-  uint first, last;
+// A visible quad in few bins, all of its halves regular.
+struct SmallQuad {
+  uint quad;
+  uint bins;  // first column 12 bits, first row 12 bits, columns 4 bits, rows 4 bits
 };
+#define BINS_BITS 12
+#define BINS_EXTENT_BITS 4
 
 // Arguments of an indirect dispatch. Shaders take the number of their workgroups from here and not from
 // gl_NumWorkGroups. On an NVIDIA H200 (driver 580.159.04) frames hung now and then, always where a loop
@@ -102,7 +118,9 @@ struct Dispatch {
 // Counted on the device; the host reads it after the frame.
 struct RasterCounters {
   uint smallQuads, largeQuads;  // visible; what exceeds the capacity is counted all the same
-  uint irregularTriangles;
+  uint largeTriangles;          // of large quads, visible
+  uint irregularQuads;          // with a half that may be irregular: two records each
+  uint irregularTriangles;      // visible
   uint visibleTriangles;
   uint culledBackFacing;        // quads
   uint visibleDegenerate;       // visible quads of one triangle
@@ -117,48 +135,62 @@ struct RasterCounters {
 
 #ifndef __cplusplus
 // As they lie in memory.
-struct PackedRasterTriangle {
-  ivec4 word[2];
+struct PackedQuad {
+  uvec4 corners;
+  uvec4 rest;
 };
-struct PackedShadeTriangle {
-  vec4 word[4];
+struct PackedVertex {
+  vec4 positionNormal;
+  vec4 uvColorMaterial;
 };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer QuadBuffer { uvec4 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer QuadIdBuffer { uvec2 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RasterTriangleBuffer { PackedRasterTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer QuadBuffer { PackedQuad at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PackedVertexBuffer { PackedVertex at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ScreenVertexBuffer { vec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer IrregularBuffer { IrregularTriangle at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ShadeTriangleBuffer { PackedShadeTriangle at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer AttributeBuffer { QuadAttributes at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SmallQuadBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBuffer { Bin at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PartBuffer { Part at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterCounterBuffer { RasterCounters c; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BinBoxBuffer { BinBox at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordBuffer { uint at[]; };
+
+uint packBins(uvec2 first, uvec2 extent) {
+  return first.x | first.y << BINS_BITS | extent.x << 2 * BINS_BITS | extent.y << (2 * BINS_BITS + BINS_EXTENT_BITS);
+}
+
+void unpackBins(uint bins, out uvec2 first, out uvec2 extent) {
+  first = uvec2(bitfieldExtract(bins, 0, BINS_BITS), bitfieldExtract(bins, BINS_BITS, BINS_BITS));
+  extent = uvec2(bitfieldExtract(bins, 2 * BINS_BITS, BINS_EXTENT_BITS), bins >> (2 * BINS_BITS + BINS_EXTENT_BITS));
+}
 #endif
 
-// Visible quad i has the triangles 2 * i and 2 * i + 1. Small quads are numbered from 0 up, large
-// ones from capacity - 1 down.
-struct RasterPush {
-  ADDRESS_OF(FrameBuffer) frame;
+// Where the triangles are. Vertices are numbered from the first that a transparent triangle has.
+struct Mesh {
   ADDRESS_OF(QuadBuffer) quads;
-  ADDRESS_OF(QuadIdBuffer) quadIds;
-  ADDRESS_OF(RasterTriangleBuffer) triangles;
+  ADDRESS_OF(PackedVertexBuffer) vertices;  // of the scene
+  ADDRESS_OF(ScreenVertexBuffer) onScreen;
   ADDRESS_OF(IrregularBuffer) irregular;
-  ADDRESS_OF(ShadeTriangleBuffer) shading;
-  ADDRESS_OF(AttributeBuffer) attributes;
-  ADDRESS_OF(BinBoxBuffer) quadBins;  // per visible quad: bins overlapped
+};
+
+struct RasterPush {
+  Mesh mesh;
+  ADDRESS_OF(FrameBuffer) frame;
+  ADDRESS_OF(SmallQuadBuffer) smallQuads;
+  ADDRESS_OF(WordBuffer) large;     // slots of triangles in many bins
   ADDRESS_OF(BinBuffer) bins;
-  ADDRESS_OF(WordBuffer) entries;   // per bin: quads, then triangles
+  ADDRESS_OF(WordBuffer) entries;   // per bin: quads, then slots of triangles
   ADDRESS_OF(PartBuffer) parts;     // low bins from 0 up; from the number of bins up: of high bins
   ADDRESS_OF(RasterCounterBuffer) counters;
-  uint quadCount, quadCapacity, irregularCapacity, entryCapacity;
+  uint quadCount, vertexCount;
+  uint smallCapacity, largeCapacity;
+  uint irregularCapacity;  // quads
+  uint entryCapacity;
   uint backFaceCulling;
   uint countAll;       // 1: count what only the results need, too
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(RasterTriangle) == 32 && sizeof(ShadeTriangle) == 64 &&
-              sizeof(QuadAttributes) == 48);
+static_assert(sizeof(RasterQuad) == 32 && sizeof(ScreenVertex) == 16);
+static_assert(sizeof(RasterPush) <= 128);
 }  // namespace oitlab::raster
 #endif
 

@@ -1,31 +1,65 @@
-// The front end's records, as words in memory and as structs to work with.
+// Triangles, worked out from the mesh and its vertices on the screen.
 #ifndef OITLAB_RASTER_RECORDS_GLSL
 #define OITLAB_RASTER_RECORDS_GLSL
 
-#include "raster/raster_types.h"
+#include "raster/planes.glsl"
 
-RasterTriangle loadTriangle(RasterTriangleBuffer triangles, uint slot) {
-  const ivec4 a = triangles.at[slot].word[0], b = triangles.at[slot].word[1];
-  return RasterTriangle(a, b.xy, uint(b.z), uint(b.w));
+// 0 where the includer knows that no triangle is irregular: llvmpipe goes through the code of branches
+// that no lane takes.
+#ifndef HAS_IRREGULAR
+#define HAS_IRREGULAR 1
+#endif
+
+bool isIrregular(uint slot) { return (slot & IRREGULAR) != 0u; }
+
+ScreenVertex loadVertex(Mesh mesh, uint vertex) {
+  const vec4 word = mesh.onScreen.at[vertex];
+  return ScreenVertex(word.xy, word.z, floatBitsToUint(word.w));
 }
 
-uvec4[2] wordsOf(RasterTriangle t) { return uvec4[2](uvec4(t.v01), uvec4(uvec2(t.v2), t.id, t.flags)); }
+// Of a half of a quad.
+uvec3 cornersOf(uint slot) { return (slot & 1u) == 0u ? uvec3(0u, 1u, 2u) : uvec3(0u, 2u, 3u); }
+uvec3 verticesOf(uvec4 quad, uint slot) { return (slot & 1u) == 0u ? quad.xyz : quad.xzw; }
 
-uint idOfTriangle(RasterTriangleBuffer triangles, uint slot) { return uint(triangles.at[slot].word[1].z); }
-
-ShadeTriangle loadShading(ShadeTriangleBuffer shading, uint slot) {
-  const vec4 a = shading.at[slot].word[0], b = shading.at[slot].word[1];
-  const uvec4 c = floatBitsToUint(shading.at[slot].word[2]);
-  const uvec4 d = floatBitsToUint(shading.at[slot].word[3]);
-  return ShadeTriangle(a.xy, a.z, a.w, b.xy, b.zw, uintBitsToFloat(c.xy), c.z, c.w,
-                       uint[3](d.x, d.y, d.z), d.w);
+// Of a slot that is not irregular.
+RasterTriangle loadTriangle(Mesh mesh, uint slot) {
+  const uvec3 vertices = verticesOf(mesh.quads.at[slot / 2u].corners, slot);
+  const ivec2 a = snapped(mesh.onScreen.at[vertices.x].xy);
+  const ivec2 b = snapped(mesh.onScreen.at[vertices.y].xy);
+  const ivec2 c = snapped(mesh.onScreen.at[vertices.z].xy);
+  const int64_t area = signedArea(a, b, c);
+  return RasterTriangle(ivec2[3](a, area > 0 ? b : c, area > 0 ? c : b), area == 0);
 }
 
-uvec4[4] wordsOf(ShadeTriangle s) {
-  return uvec4[4](floatBitsToUint(vec4(s.anchor, s.invW, s.minInvW)),
-                  floatBitsToUint(vec4(s.invWSlope, s.b1Slope)),
-                  uvec4(floatBitsToUint(s.b2Slope), s.id, s.flags),
-                  uvec4(s.normals[0], s.normals[1], s.normals[2], s.material));
+uint idOfTriangle(Mesh mesh, uint slot) {
+  if (isIrregular(slot)) return mesh.irregular.at[slot & ~IRREGULAR].shading.id;
+  const uvec4 rest = mesh.quads.at[slot / 2u].rest;
+  return (slot & 1u) == 0u ? rest.x : rest.y;
+}
+
+// What the planes leave open.
+void describe(inout ShadeTriangle s, uint slot, PackedQuad quad, uvec3 corners, uvec3 normals) {
+  s.normals = uint[3](normals.x, normals.y, normals.z);
+  s.quad = slot / 2u;
+  s.id = (slot & 1u) == 0u ? quad.rest.x : quad.rest.y;
+  s.material = quad.rest.z;
+  s.flags = quad.rest.w | (corners.x | corners.y << 2 | corners.z << 4) << TRIANGLE_CORNER_SHIFT;
+}
+
+// `precise` all the way: every shader gets the same bits.
+ShadeTriangle loadShading(Mesh mesh, uint slot) {
+#if HAS_IRREGULAR
+  if (isIrregular(slot)) return mesh.irregular.at[slot & ~IRREGULAR].shading;
+#endif
+  const PackedQuad quad = mesh.quads.at[slot / 2u];
+  const uvec3 vertices = verticesOf(quad.corners, slot);
+  PlaneCorner a = PlaneCorner(mesh.onScreen.at[vertices.x], cornersOf(slot).x);
+  PlaneCorner b = PlaneCorner(mesh.onScreen.at[vertices.y], cornersOf(slot).y);
+  PlaneCorner c = PlaneCorner(mesh.onScreen.at[vertices.z], cornersOf(slot).z);
+  ShadeTriangle s = regularPlanes(a, b, c);
+  describe(s, slot, quad, uvec3(a.number, b.number, c.number),
+           floatBitsToUint(vec3(a.vertex.w, b.vertex.w, c.vertex.w)));
+  return s;
 }
 
 #endif
