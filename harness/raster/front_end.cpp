@@ -40,8 +40,7 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       binRows_(divideUp(target.height(), BIN_SIZE)),
       zeroFill_(device),
       project_(Pipeline::compute(device, "raster/project.comp")),
-      setup_(Pipeline::compute(device, "raster/setup.comp")),
-      irregularQuads_(Pipeline::compute(device, "raster/irregular.comp")),
+      setup_(Pipeline::compute(device, "raster/setup.comp", {{"HAS_IRREGULAR", "0"}})),
       countLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "1"}})),
       offsets_(Pipeline::compute(device, "raster/bin_offsets.comp")),
       writeSmall_(Pipeline::compute(device, "raster/bin_small.comp")),
@@ -113,11 +112,11 @@ void FrontEnd::makeRoomForLarge(std::uint64_t triangles) {
   large_ = Buffer(device_, memory_, "large triangles", triangles * sizeof(std::uint32_t));
 }
 
-void FrontEnd::makeRoomForIrregular(std::uint64_t quads) {
-  irregularCapacity_ = std::uint32_t(quads);
+void FrontEnd::makeRoomForIrregular(std::uint64_t triangles) {
+  irregularCapacity_ = std::uint32_t(triangles);
   irregular_ = Buffer();
   irregular_ =
-      Buffer(device_, memory_, "irregular triangles", quads * 2 * sizeof(IrregularTriangle));
+      Buffer(device_, memory_, "irregular triangles", triangles * sizeof(IrregularTriangle));
 }
 
 void FrontEnd::makeRoomForEntries(std::uint64_t entries) {
@@ -168,10 +167,6 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     frame.finishTarget(0);  // beside steps that leave room on a GPU
     run(setup_, [&] { dispatchEach(frame.commands, quadCount_); });
     frame.barrier(compute, compute);
-    if (irregularSeen_) {
-      run(irregularQuads_, [&] { frame.commands.dispatch(IRREGULAR_GROUPS, 1, 1); });
-      frame.barrier(compute, compute);
-    }
   });
   frame.stage("binning", [&] {
     if (largeSeen_) {
@@ -200,15 +195,18 @@ std::uint32_t FrontEnd::partCapacity() const {
 
 bool FrontEnd::grow() {
   const RasterCounters& c = counted();
-  const bool lacked =
-      (c.largeTriangles > 0 && !largeSeen_) || (c.irregularQuads > 0 && !irregularSeen_);
-  irregularSeen_ = irregularSeen_ || c.irregularQuads > 0;
-  largeSeen_ = largeSeen_ || c.largeTriangles > 0 || irregularSeen_;
+  bool lacked = false;
+  if (c.irregularSeen != 0) {
+    irregularSeen_ = lacked = true;
+    setup_ = Pipeline::compute(device_, "raster/setup.comp", {{"HAS_IRREGULAR", "1"}});
+  }
+  if (c.largeTriangles > 0 && !largeSeen_) largeSeen_ = lacked = true;
   if (c.ready != 0) return lacked;
   if (c.smallQuads > smallCapacity_)
     makeRoomForSmall(std::min<std::uint64_t>(withSlack(c.smallQuads), quadCount_));
   if (c.largeTriangles > largeCapacity_) makeRoomForLarge(withSlack(c.largeTriangles));
-  if (c.irregularQuads > irregularCapacity_) makeRoomForIrregular(withSlack(c.irregularQuads));
+  if (c.irregularTriangles > irregularCapacity_)
+    makeRoomForIrregular(withSlack(c.irregularTriangles));
   if (c.entries > entryCapacity_) makeRoomForEntries(withSlack(c.entries));
   return true;
 }

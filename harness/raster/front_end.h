@@ -68,7 +68,7 @@ class FrontEnd {
   void makeQuads(const GpuScene& scene);
   void makeRoomForSmall(std::uint64_t quads);
   void makeRoomForLarge(std::uint64_t triangles);
-  void makeRoomForIrregular(std::uint64_t quads);
+  void makeRoomForIrregular(std::uint64_t triangles);
   void makeRoomForEntries(std::uint64_t entries);
 
   const Device& device_;
@@ -78,10 +78,10 @@ class FrontEnd {
   std::uint64_t vertices_ = 0;  // address of the first that a quad has
   std::uint32_t binColumns_, binRows_;
   std::uint32_t smallCapacity_ = 0, largeCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
-  // The steps for these are recorded from the first that is seen.
+  // What these need is recorded from the first that is seen.
   bool largeSeen_ = false, irregularSeen_ = false;
   ZeroFill zeroFill_;
-  Pipeline project_, setup_, irregularQuads_, countLarge_, offsets_, writeSmall_, writeLarge_;
+  Pipeline project_, setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
   Buffer quads_, onScreen_, irregular_, smallQuads_, large_;
   Buffer bins_, entries_, parts_, counters_, readback_;
 };

@@ -71,17 +71,17 @@ class Lucid : public Method {
     // come first, since the last to end holds up the frame.
     const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
     frame.stage("sort", [&] {
-      if (needed_.longLists) run(programs_.sortHigh, high);
-      if (needed_.filter) run(programs_.sortLow, low);
+      if (needed_.longLists) run(*programs_.sortHigh, high);
+      if (needed_.filter) run(*programs_.sortLow, low);
     });
     frame.stage("low_raster", [&] {
-      if (programs_.ordersFirst) run(programs_.ordered, offsetof(LucidCounters, ordered));
+      if (programs_.ordersFirst) run(*programs_.ordered, offsetof(LucidCounters, ordered));
       if (needed_.filter || needed_.longLists)
         frame.barrier(compute, compute | Stage::eDrawIndirect);
-      if (needed_.filter) run(programs_.lowRaster, low);
+      if (needed_.filter) run(*programs_.lowRaster, low);
     });
     frame.stage("high_raster", [&] {
-      if (needed_.longLists) run(programs_.highRaster, high);
+      if (needed_.longLists) run(*programs_.highRaster, high);
     });
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, push);
@@ -117,9 +117,7 @@ class Lucid : public Method {
       again = true;
     }
     if (again) return {.recordAgain = true};
-    // A short subgroup goes through each list several times.
-    const std::uint32_t sweeps = std::max(32 / device_->info().subgroupSize, 1u);
-    const std::uint32_t toBlend = c.triHalfBlocks * sweeps + c.passedOn;
+    const std::uint32_t toBlend = c.triHalfBlocks + c.passedOn;
     const bool blended = !verifiesLoops(*device_) || c.blended == toBlend;
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
@@ -183,7 +181,7 @@ class Lucid : public Method {
                           .near = frame.camera.near,
                           .size = {frame.target.width(), frame.target.height()}};
     auto run = [&](std::size_t pass, std::size_t offset) {
-      dispatchCounted(frame, programs_.blocks[pass], push, frontEnd_->counters(), offset);
+      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_->counters(), offset);
     };
     if (needed_.highBins) run(1, offsetof(RasterCounters, high));
     run(0, offsetof(RasterCounters, low));
@@ -234,13 +232,13 @@ class Lucid : public Method {
       dispatchCounted(frame, pipeline, push, buffers_->counters.vk(), offset);
     };
     frame.barrier(compute, compute | Stage::eDrawIndirect);
-    run(programs_.repair, offsetof(LucidCounters, repair));
+    run(*programs_.repair, offsetof(LucidCounters, repair));
     if (buffers_->deepCapacity == 0) return;  // no frame has needed it yet
     frame.barrier(compute, compute | Stage::eDrawIndirect);
-    run(programs_.deepCapture, offsetof(LucidCounters, deep));
+    run(*programs_.deepCapture, offsetof(LucidCounters, deep));
     for (push.round = 0; push.round < push.rounds; ++push.round) {
       frame.barrier(compute, compute);
-      run(programs_.deepResolve, offsetof(LucidCounters, deepResolve));
+      run(*programs_.deepResolve, offsetof(LucidCounters, deepResolve));
     }
   }
 

@@ -55,6 +55,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   const std::uint32_t lanes = device.info().subgroupSize;
   const Defines common = {
       {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
+      {"SMALL_SUBGROUP", lanes < 32 ? "1" : "0"},
       {"TARGET_FORMAT", targetFormat},
       {"HAS_OPAQUE", hasOpaque ? "1" : "0"},
       {"HAS_IRREGULAR", hasIrregular ? "1" : "0"},
@@ -65,52 +66,50 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
       {"HAS_THRESHOLD", parameters.real("alpha_threshold") > 0.0 ? "1" : "0"},
       {"UNIFORM_CONTROL_FLOW", device.hasSubgroupUniformControlFlow() ? "1" : "0"},
       {"VERIFY_LOOPS", verifiesLoops(device) ? "1" : "0"}};
+  // `lanes` of a subgroup where the program counts on it; 0: any.
+  auto program = [&device](const char* file, const Defines& defines, std::uint32_t lanes = 0) {
+    return Program([=, &device] { return Pipeline::compute(device, file, defines, {}, lanes); });
+  };
+  auto with = [](Defines defines, const Defines& more) {
+    for (const auto& [name, value] : more) defines[name] = value;
+    return defines;
+  };
   auto raster = [&](const std::string& kind, const char* teams, std::int64_t filter) {
-    Defines defines = common;
-    defines["ORDERED"] = kind == "ordered" ? "1" : "0";
-    defines["HIGH"] = kind == "high" ? "1" : "0";
-    defines["LIST"] = "ORDERED_LIST";  // of the one that sorts
-    defines["TEAMS"] = teams;
-    defines["LOW_TEAMS"] = lowTeams;
-    defines["DEPTH_FILTER"] = std::to_string(filter);
-    return Pipeline::compute(device, "lucid/blend.comp", defines, {}, lanes);
+    return program("lucid/blend.comp",
+                   with(common, {{"ORDERED", kind == "ordered" ? "1" : "0"},
+                                 {"HIGH", kind == "high" ? "1" : "0"},
+                                 {"LIST", "ORDERED_LIST"},  // of the one that sorts
+                                 {"TEAMS", teams},
+                                 {"LOW_TEAMS", lowTeams},
+                                 {"DEPTH_FILTER", std::to_string(filter)}}),
+                   lanes);
   };
   auto sort = [&](const std::string& kind, const char* teams) {
-    return Pipeline::compute(device, "lucid/sort_lists.comp",
-                             {{"SUBGROUP_SIZE", common.at("SUBGROUP_SIZE")},
-                              {"UNIFORM_CONTROL_FLOW", common.at("UNIFORM_CONTROL_FLOW")},
-                              {"HIGH", kind == "high" ? "1" : "0"},
-                              {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
-                              {"TEAMS", teams}},
-                             {}, lanes);
+    return program("lucid/sort_lists.comp",
+                   with(common, {{"HIGH", kind == "high" ? "1" : "0"},
+                                 {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
+                                 {"TEAMS", teams}}),
+                   lanes);
   };
   // A workgroup a part of a bin. On a CPU a large one is no faster.
-  const char* group = lanes >= 32 ? "256u" : "64u";
+  const char* group = isWide ? "256u" : "64u";
   for (std::size_t pass = 0; pass < blocks.size(); ++pass)
-    blocks[pass] = Pipeline::compute(device, "lucid/blocks.comp",
-                                     {{"PASS", std::to_string(pass)},
-                                      {"HAS_IRREGULAR", common.at("HAS_IRREGULAR")},
-                                      {"LOW_TEAMS", lowTeams},
-                                      {"ORDERED_TEAMS", orderedTeams},
-                                      {"GROUP", group},
-                                      {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}});
+    blocks[pass] =
+        program("lucid/blocks.comp", with(common, {{"PASS", std::to_string(pass)},
+                                                   {"LOW_TEAMS", lowTeams},
+                                                   {"ORDERED_TEAMS", orderedTeams},
+                                                   {"GROUP", group},
+                                                   {"FIRST_LIST", ordersFirst ? "ORDERED_LIST"
+                                                                              : "0u"}}));
   const std::int64_t filter = parameters.integer("depth_filter");
-  if (ordersFirst) ordered = raster("ordered", orderedTeams, 1);
+  ordered = raster("ordered", orderedTeams, 1);
   lowRaster = raster("low", lowTeams, filter);
   highRaster = raster("high", "1u", filter);
   sortLow = sort("low", lowTeams);
   sortHigh = sort("high", "1u");
-  repair = Pipeline::compute(device, "lucid/repair.comp", common, {}, lanes);
-  deepCapture = Pipeline::compute(device, "lucid/deep_capture.comp",
-                                  {{"TARGET_FORMAT", targetFormat},
-                                   {"HAS_OPAQUE", common.at("HAS_OPAQUE")},
-                                   {"HAS_IRREGULAR", common.at("HAS_IRREGULAR")},
-                                   {"HAS_TEXTURES", common.at("HAS_TEXTURES")},
-                                   {"HAS_GRADIENTS", common.at("HAS_GRADIENTS")},
-                                   {"HAS_ATTRIBUTES", common.at("HAS_ATTRIBUTES")},
-                                   {"HAS_SMOOTH", common.at("HAS_SMOOTH")}});
-  deepResolve =
-      Pipeline::compute(device, "lucid/deep_resolve.comp", {{"TARGET_FORMAT", targetFormat}});
+  repair = program("lucid/repair.comp", common, lanes);
+  deepCapture = program("lucid/deep_capture.comp", common);
+  deepResolve = program("lucid/deep_resolve.comp", common);
 }
 
 }  // namespace oitlab::lucid

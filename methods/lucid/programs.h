@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "gpu/pipeline.h"
@@ -12,13 +14,31 @@ namespace oitlab::lucid {
 /// llvmpipe ends long loops early and in silence: there the turns are counted.
 bool verifiesLoops(const Device& device);
 
+/// A program that is made when it is first asked for: many frames need few of them, and drivers take
+/// their time (llvmpipe seconds).
+class Program {
+ public:
+  Program() = default;
+  explicit Program(std::function<Pipeline()> make) : make_(std::move(make)) {}
+
+  /// Throws DeviceError when the driver refuses it.
+  const Pipeline& operator*() const {
+    if (!pipeline_) pipeline_ = make_();
+    return *pipeline_;
+  }
+
+ private:
+  std::function<Pipeline()> make_;
+  mutable std::optional<Pipeline> pipeline_;
+};
+
 /// The programs of shaders/lucid for one device, scene and set of parameters. What the scene has
 /// not is not in them.
 struct Programs {
   Programs() = default;
 
   /// `hasOpaque`: the scene has opaque triangles. `hasIrregular`: frames have triangles that cannot
-  /// be snapped. Throws DeviceError when the driver refuses one.
+  /// be snapped. `device` must outlive this.
   Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
            const std::string& targetFormat, const Parameters& parameters);
 
@@ -27,9 +47,9 @@ struct Programs {
   /// Short lists are blended with a depth filter of 1 first.
   bool ordersFirst = false;
 
-  std::array<Pipeline, 3> blocks;  ///< by PASS of blocks.comp
-  Pipeline ordered, sortLow, sortHigh, lowRaster, highRaster;
-  Pipeline repair, deepCapture, deepResolve;
+  std::array<Program, 3> blocks;  ///< by PASS of blocks.comp
+  Program ordered, sortLow, sortHigh, lowRaster, highRaster;
+  Program repair, deepCapture, deepResolve;
 };
 
 }  // namespace oitlab::lucid

@@ -7,8 +7,8 @@
 //   high     HIGH, half-blocks of yet longer lists, with the depth filter.
 // The latter two find their lists sorted (sort_lists.comp).
 //
-// Each lane owns a pixel: a subgroup of less than 32 lanes goes through the list several times, and of
-// one of 64 half the lanes own none.
+// Each lane owns a pixel, or in a subgroup of less than 32 lanes several; of one of 64 half the lanes own
+// none.
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
@@ -22,7 +22,7 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 #include "lucid/sort.glsl"
 #endif
 
-shared uint samplesOf[TEAMS * OWNERS];  // bit i: sample i falls on this pixel
+shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
 
 // A workgroup a job, up to a number that every device can dispatch; these then take several.
 void addRepair(HalfBlock block, uint pixels) {
@@ -49,7 +49,7 @@ void passOn(HalfBlock block, uint pixels) {
   const uint job = push.counters.c.lowLists + atomicAdd(push.counters.c.passedJobs, 1u);
   push.filterJobs.at[job] = PixelJob(block, pixels);
 #if VERIFY_LOOPS
-  atomicAdd(push.counters.c.passedOn, block.count * (32u / OWNERS));
+  atomicAdd(push.counters.c.passedOn, block.count);
 #endif
   atomicMax(push.counters.c.low.x, min(job / LOW_TEAMS + 1u, MAX_GROUPS));
 }
@@ -88,20 +88,87 @@ uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & 
 uint placeOf(HalfBlock block, uint i) { return push.keys.at[block.first + i]; }
 #endif
 
-// Blends those pixels of the half-block that `owned` has, one a lane: the lane's is `bit`. Returns the
-// pixels whose order went wrong.
-uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit) {
-  const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
-  const uint firstSample = team * OWNERS;
-  const bool owner = lane < OWNERS && (owned & (1u << bit)) != 0u;
-  const vec2 pixel = vec2(pixelOf(bit));
-  const ivec2 place = corner + ivec2(pixel);
-  const float opaque = opaqueDepthAt(place);
-  Pixel p;
-  clearPixel(p);
-  if (lane < OWNERS) samplesOf[firstSample + lane] = 0u;
+// Places of the coverage masks that group g of a team's pixels has.
+uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g); }
 
-  uint covered = 0u, samples = 0u, turns = 0u;
+// Pushes to a pixel, `bit` of those in `own`, the fragments of prepared triangles: `count` of them, the
+// first at place `at` of the batch and first of the team's prepared ones.
+void blendPrepared(inout Pixel p, uint own, uint bit, float opaque, uint at, uint count) {
+  const uint lane = gl_SubgroupInvocationID, first = gl_SubgroupID * PREPARED_COUNT;
+  const uint pixelBit = own & (1u << bit);
+  const vec2 pixel = vec2(pixelOf(bit));
+  if (SMALL_SUBGROUP == 0) {
+    // In pairs, and without branches: what the one waits for, the other has time for.
+    for (uint k = 0u; k < count; k += 2u) {
+      const uint next = min(k + 1u, count - 1u);
+      const bool full = isFull(p);
+      const Taken t0 = take(first + k, (batch[at + k].y & pixelBit) != 0u, pixel, opaque, full);
+      const Taken t1 = take(first + next, (batch[at + next].y & pixelBit) != 0u && next > k, pixel, opaque, full);
+      if (t0.kept) pushFragment(p, t0.f);
+      p.samples += uint(t0.blends);
+      if (t1.kept) pushFragment(p, t1.f);
+      p.samples += uint(t1.blends);
+    }
+  } else {
+    // There are several groups of pixels: only those that reach this one.
+    const bool reaches = lane < count && (batch[at + min(lane, count - 1u)].y & groupMask(bit / OWNERS)) != 0u;
+    for (uint rest = subgroupBallot(reaches).x; rest != 0u; rest &= rest - 1u) {
+      const uint k = findLSB(rest);
+      const Taken t = take(first + k, (batch[at + k].y & pixelBit) != 0u, pixel, opaque, isFull(p));
+      if (t.kept) pushFragment(p, t.f);
+      p.samples += uint(t.blends);
+    }
+  }
+}
+
+// Pushes to a pixel, `bit` of those in `own`, the samples that fell on it.
+void blendSamples(inout Pixel p, uint own, uint bit, float opaque) {
+  uint arrived = 0u;
+  if ((own & (1u << bit)) != 0u) arrived = samplesOf[32u * gl_SubgroupID + bit];
+  if (arrived != 0u) samplesOf[32u * gl_SubgroupID + bit] = 0u;
+  for (; arrived != 0u; arrived &= arrived - 1u) {
+    const Fragment f = loadSample(findLSB(arrived));
+    if (!isHidden(f.invW, opaque)) {
+      p.samples += uint(!isFull(p));
+      pushFragment(p, f);
+    }
+  }
+}
+
+void countSamples(uint samples, uint turns) {
+  const uint all = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
+  if (gl_SubgroupInvocationID != 0u) return;
+  if (all > 0u) atomicAdd(push.counters.c.samples, all);
+#if VERIFY_LOOPS
+  atomicAdd(push.counters.c.blended, turns);
+#endif
+}
+
+// Pixels of a lane: one of each group. Where there are several, code is not to be made for each.
+#define GROUPS (32u / OWNERS)
+#if SMALL_SUBGROUP
+#define EACH_GROUP [[dont_unroll]]
+#else
+#define EACH_GROUP [[unroll]]
+#endif
+
+// The lane's pixel of group g: its place in the coverage masks.
+uint bitOf(uint g) { return min(gl_SubgroupInvocationID + OWNERS * g, 31u); }
+
+// Blends those pixels of the half-block that `owned` has. Returns the lane's pixels whose order went wrong.
+uint sweep(HalfBlock block, ivec2 corner, uint owned) {
+  const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
+  const uint own = lane < OWNERS ? owned : 0u;
+  Pixel pixels[GROUPS];
+  float opaque[GROUPS];
+  [[unroll]] for (uint g = 0u; g < GROUPS; ++g) {
+    const uint bit = bitOf(g);
+    clearPixel(pixels[g]);
+    opaque[g] = opaqueDepthAt(corner + ivec2(pixelOf(bit)));
+    if (lane < OWNERS) samplesOf[32u * team + bit] = 0u;
+  }
+
+  uint covered = 0u, turns = 0u;
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
     TriHalfBlock item = TriHalfBlock(0u, 0u);
     if (first + lane < block.count) {
@@ -111,38 +178,28 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit) {
     covered |= item.mask;
     Batch b = makeBatch(item.triangle, item.mask);
     turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
-    const uint full = HAS_THRESHOLD == 1 ? subgroupOr(owner && isFull(p) ? 1u << bit : 0u) : 0u;
+    uint full = 0u, visits = 0u;  // visits: of triangles to groups of pixels that they cover
+    [[unroll]] for (uint g = 0u; g < GROUPS; ++g) {
+      if (HAS_THRESHOLD == 1) full |= isFull(pixels[g]) ? 1u << bitOf(g) : 0u;
+      visits += GROUPS == 1u ? b.size : subgroupBallotBitCount(subgroupBallot((item.mask & groupMask(g)) != 0u));
+    }
+    if (HAS_THRESHOLD == 1) full = subgroupOr(full & own);
 
     // Where triangles cover a good part of the pixels, each lane shades its own; where they are small,
     // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
     // as much a sample.
-    if (4u * b.samples >= OWNERS * b.size) {
+    if (4u * b.samples >= OWNERS * visits) {
       for (uint part = 0u; part < b.size; part += PREPARED_COUNT) {
         const uint mine = b.place - b.at - part;  // wraps where it is of an earlier part
         if (item.mask != 0u && mine < PREPARED_COUNT)
           storePrepared(team * PREPARED_COUNT + mine, prepare(item.triangle, corner));
         teamBarrier();
-        const uint here = min(b.size - part, PREPARED_COUNT), at = b.at + part;
+        const uint here = min(b.size - part, PREPARED_COUNT);
         turns += here;
-        // In pairs, and without branches: what the one waits for, the other has time for. Small
-        // subgroups are a CPU's, which has nothing to gain from the one that an odd number lacks.
-        const bool inPairs = SUBGROUP_SIZE >= 32u;
-        for (uint k = 0u; k < here; k += inPairs ? 2u : 1u) {
-          const bool full = isFull(p);
-          const bool covers0 = owner && (batch[at + k].y & (1u << bit)) != 0u;
-          const Taken t0 = take(team * PREPARED_COUNT + k, covers0, pixel, opaque, full);
-          Taken t1;
-          if (inPairs) {
-            const uint next = min(k + 1u, here - 1u);
-            const bool covers1 = owner && (batch[at + next].y & (1u << bit)) != 0u && next > k;
-            t1 = take(team * PREPARED_COUNT + next, covers1, pixel, opaque, full);
-          }
-          if (t0.kept) pushFragment(p, t0.f);
-          samples += uint(t0.blends);
-          if (inPairs) {
-            if (t1.kept) pushFragment(p, t1.f);
-            samples += uint(t1.blends);
-          }
+        EACH_GROUP for (uint g = 0u; g < GROUPS; ++g) {
+          Pixel p = pixels[g];
+          blendPrepared(p, own, bitOf(g), opaque[g], b.at + part, here);
+          pixels[g] = p;
         }
         teamBarrier();
       }
@@ -161,71 +218,52 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned, uint bit) {
           const bool known = (full & (1u << hit.y)) != 0u;
           if (known || shadePrepared(t, hitPixel, f.invW, f.color)) {
             storeSample(lane, f);
-            atomicOr(samplesOf[firstSample + hit.y % OWNERS], 1u << lane);
+            atomicOr(samplesOf[32u * team + hit.y], 1u << lane);
           }
         }
         teamBarrier();
-        uint arrived = owner ? samplesOf[firstSample + lane] : 0u;
-        if (arrived != 0u) samplesOf[firstSample + lane] = 0u;
-        for (; arrived != 0u; arrived &= arrived - 1u) {
-          const Fragment f = loadSample(findLSB(arrived));
-          if (!isHidden(f.invW, opaque)) {
-            samples += uint(!isFull(p));
-            pushFragment(p, f);
-          }
+        EACH_GROUP for (uint g = 0u; g < GROUPS; ++g) {
+          Pixel p = pixels[g];
+          blendSamples(p, own, bitOf(g), opaque[g]);
+          pixels[g] = p;
         }
         teamBarrier();
       }
     }
   }
-  drainPixel(p);
   covered = subgroupOr(covered);
-  const bool touched = owner && (covered & (1u << bit)) != 0u;
-#if ORDERED
-  if (p.invalid) samples = 0u;
-#endif
-  const uint allSamples = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
-  if (lane == 0u) {
-    if (allSamples > 0u) atomicAdd(push.counters.c.samples, allSamples);
-#if VERIFY_LOOPS
-    atomicAdd(push.counters.c.blended, turns);
-#endif
-  }
-  if (touched) {
+  uint invalid = 0u, samples = 0u;
+  EACH_GROUP for (uint g = 0u; g < GROUPS; ++g) {
+    Pixel p = pixels[g];
+    drainPixel(p);
+    const uint bit = bitOf(g);
+    if ((covered & own & (1u << bit)) == 0u) continue;
+    const ivec2 place = corner + ivec2(pixelOf(bit));
+    if (p.invalid) invalid |= 1u << bit;
 #if ORDERED
     const bool composes = !p.invalid;
+    samples += composes ? p.samples : 0u;
 #else
+    samples += p.samples;
     const bool composes = !p.invalid || (push.flags & (REPAIR | SHOW_ERRORS)) == 0u;
     if (p.invalid && (push.flags & SHOW_ERRORS) != 0u) imageStore(target, place, vec4(1.0, 0.0, 0.0, 1.0));
 #endif
     if (composes) imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
   }
-  return touched && p.invalid ? 1u << bit : 0u;
+  countSamples(samples, turns);
+  return invalid;
 }
 
 void blendHalfBlock(HalfBlock block, uint pixels) {
-  const uint lane = gl_SubgroupInvocationID;
-  const ivec2 corner = cornerOf(block.number, push.size);
 #if ORDERED
   placeMask = sortList(gl_SubgroupID * LIST, block);
 #endif
-  uint invalid = 0u;
-  for (uint begin = 0u; begin < 32u; begin += OWNERS) {
-    const uint owned = pixels & (0xffffffffu >> (32u - OWNERS)) << begin;
-    if (owned != 0u) {
-      invalid |= sweep(block, corner, owned, min(begin + lane, 31u));
-#if VERIFY_LOOPS
-    } else if (lane == 0u) {
-      atomicAdd(push.counters.c.blended, block.count);
-#endif
-    }
-    teamBarrier();
-  }
-  invalid = subgroupOr(invalid);
+  const uint invalid = subgroupOr(sweep(block, cornerOf(block.number, push.size), pixels));
+  teamBarrier();
 #if ORDERED
   if (invalid != 0u) storeOrder(gl_SubgroupID * LIST, block, placeMask);
 #endif
-  if (lane == 0u && invalid != 0u) {
+  if (gl_SubgroupInvocationID == 0u && invalid != 0u) {
 #if ORDERED
     passOn(block, invalid);
 #else
@@ -244,7 +282,7 @@ void handOver(HalfBlock block) {
   covered = subgroupOr(covered);
   if (gl_SubgroupInvocationID == 0u) {
 #if VERIFY_LOOPS
-    atomicAdd(push.counters.c.blended, block.count * (32u / OWNERS));
+    atomicAdd(push.counters.c.blended, block.count);
 #endif
     atomicAdd(push.counters.c.pixelsToRepair, bitCount(covered));
     for (uint rest = covered; rest != 0u; rest &= rest - 1u) addRepair(block, rest & (0u - rest));

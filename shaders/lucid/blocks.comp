@@ -37,8 +37,7 @@ ivec2 cornerIn(ivec2 region, uint block) {
 
 void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
-  push.keys.at[starts[block] + place] =
-      sortKey(loadShading(push.mesh, slot), cornerIn(region, block), mask);
+  push.keys.at[starts[block] + place] = sortKey(push.mesh, slot, cornerIn(region, block), mask);
 }
 
 // `number`: of the triangle in its part.
@@ -69,8 +68,8 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
 void walk(bool write, Span span) {
   for (uint i = gl_LocalInvocationIndex; i < strips; i += GROUP) {
     const uint number = triangleOf(i), slot = slots[number], begin = begins[number];
-    const int strip = int(bitfieldExtract(begin, 0, FIRST_STRIP_BITS) + i - (begin >> FIRST_STRIP_BITS));
-    takeStrip(write, span, slot, number, strip, coverStrip(span, strip, slot));
+    const int strip = int(bitfieldExtract(begin, 0, STRIP_BITS) + i - (begin >> BEGIN_SHIFT));
+    takeStrip(write, span, slot, number, strip, coverStrip(span, strip, slot, (begin & TURNED) != 0u));
   }
 }
 

@@ -12,6 +12,7 @@ struct Pixel {
   float lastInvW;    // of the fragment blended last
   uint lastId;
   bool invalid;      // one came after one that it is in front of
+  uint samples;      // blended
   Fragment queue[DEPTH_FILTER];  // front to back
 };
 
@@ -25,6 +26,7 @@ void clearPixel(out Pixel p) {
   p.lastInvW = NEAREST;
   p.lastId = 0u;
   p.invalid = false;
+  p.samples = 0u;
   [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
 }
 

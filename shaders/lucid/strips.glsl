@@ -20,24 +20,30 @@ uint slotOf(Part part, uint i) {
   return push.entries.at[part.first + i - part.quads];
 }
 
-// The part's triangles, in the order of the group's subgroups: their slots, and the strips that they
-// reach, before each of them and which is the first.
+// The part's triangles, in the order of the group's subgroups: their slots, and of each the first strip that
+// it reaches, whether its corners are to be turned about, and how many strips those before it reach.
 #define RUN ((PART_TRIANGLES + GROUP - 1u) / GROUP)  // triangles of an invocation
 shared uint slots[PART_TRIANGLES], begins[PART_TRIANGLES];
-#define FIRST_STRIP_BITS 3
+#define STRIP_BITS 3
+#define TURNED (1u << STRIP_BITS)
+#define BEGIN_SHIFT (STRIP_BITS + 1)
 shared uint stripSums[GROUP];  // of a subgroup each
 shared uint strips;
 
-// First strip that the triangle reaches in the bin, and how many.
+// What `begins` says of the triangle itself, and how many strips it reaches in the bin.
 uvec2 stripsOf(Span span, uint slot) {
   ivec4 box = ivec4(ivec2(0), span.extent - 1);
+  uint turned = 0u;
   if (HAS_IRREGULAR == 0 || !isIrregular(slot)) {
     const RasterTriangle t = loadTriangle(push.mesh, slot);
+    const int64_t area = signedArea(t.v[0], t.v[1], t.v[2]);
+    if (area < 0) turned = TURNED;
     const ivec4 own = snappedBox(t.v[0], t.v[1], t.v[2]) - span.region.xyxy;
-    box = t.isEmpty ? emptyBox : ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
+    box = area == 0 ? emptyBox : ivec4(max(own.xy, box.xy), min(own.zw, box.zw));
   }
   if (isEmpty(box)) return uvec2(0u);
-  return uvec2(uint(box.y) / HALF_BLOCK_HEIGHT, uint(box.w) / HALF_BLOCK_HEIGHT - uint(box.y) / HALF_BLOCK_HEIGHT + 1u);
+  const uint first = uint(box.y) / HALF_BLOCK_HEIGHT, last = uint(box.w) / HALF_BLOCK_HEIGHT;
+  return uvec2(first | turned, last - first + 1u);
 }
 
 // Fills `slots` and, if there is to be a walk, `begins` and `strips`. All invocations take part.
@@ -62,7 +68,7 @@ void findStrips(Span span, bool walks) {
   for (uint s = 0u; s < gl_SubgroupID; ++s) before += stripSums[s];
   [[unroll]] for (uint r = 0u; r < RUN; ++r) {
     const uint number = self * RUN + r;
-    if (number < PART_TRIANGLES) begins[number] = before << FIRST_STRIP_BITS | reached[r].x;
+    if (number < PART_TRIANGLES) begins[number] = before << BEGIN_SHIFT | reached[r].x;
     before += reached[r].y;
   }
   if (gl_SubgroupID == gl_NumSubgroups - 1u && subgroupElect()) {
@@ -74,7 +80,7 @@ void findStrips(Span span, bool walks) {
 }
 
 // Coverage of a strip's half-blocks: a byte of each row is one of each mask.
-uvec4 coverStrip(Span span, int strip, uint slot) {
+uvec4 coverStrip(Span span, int strip, uint slot, bool turned) {
   const uint onScreen = bitsBetween(0, span.extent.x - 1);
   uvec4 rows;
 #if HAS_IRREGULAR
@@ -84,7 +90,9 @@ uvec4 coverStrip(Span span, int strip, uint slot) {
   } else
 #endif
   {
-    const RegionEdges edges = regionEdges(loadTriangle(push.mesh, slot), span.region);
+    RasterTriangle t = loadTriangle(push.mesh, slot);
+    if (turned) t = turnAbout(t);
+    const RegionEdges edges = regionEdges(t, span.region);
     [[unroll]] for (int row = 0; row < 4; ++row) rows[row] = rowCoverage(edges, 4 * strip + row);
   }
   uvec4 masks = uvec4(0u);
@@ -99,7 +107,7 @@ uvec4 coverStrip(Span span, int strip, uint slot) {
 uint triangleOf(uint item) {
   uint number = 0u;
   [[unroll]] for (uint step = PART_TRIANGLES / 2u; step > 0u; step /= 2u)
-    if (begins[number + step] >> FIRST_STRIP_BITS <= item) number += step;
+    if (begins[number + step] >> BEGIN_SHIFT <= item) number += step;
   return number;
 }
 

@@ -25,7 +25,7 @@ void main() {
     RasterTriangle t;
     uvec2 first, extent;
     if (regular) {
-      t = loadTriangle(push.mesh, slot);
+      t = positive(loadTriangle(push.mesh, slot));
       const uvec4 bins = uvec4(clampBox(snappedBox(t.v[0], t.v[1], t.v[2]), size)) / BIN_SIZE;
       first = bins.xy;
       extent = bins.zw - first + 1u;

@@ -57,7 +57,7 @@ void main() {
   // The last workgroup to end knows all counts.
   const bool ready = push.counters.c.smallQuads <= push.smallCapacity &&
                      push.counters.c.largeTriangles <= push.largeCapacity &&
-                     push.counters.c.irregularQuads <= push.irregularCapacity &&
+                     push.counters.c.irregularTriangles <= push.irregularCapacity &&
                      atomicAdd(push.counters.c.entries, 0u) <= push.entryCapacity;
   const uint smallGroups = (push.counters.c.smallQuads + SETUP_GROUP - 1u) / SETUP_GROUP;
   const uint lowBins = atomicAdd(push.counters.c.lowBins, 0u);

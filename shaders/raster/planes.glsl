@@ -10,8 +10,7 @@ struct PlaneCorner {
   uint number;
 };
 
-// Nearer first, then by place: an order of the corners that does not depend on the order in which
-// the triangle lists them, so that triangles on the same three points get the same depths.
+// Nearer first, then by place.
 bool comesFirst(PlaneCorner a, PlaneCorner b) {
   if (a.vertex.z != b.vertex.z) return a.vertex.z > b.vertex.z;
   if (a.vertex.x != b.vertex.x) return a.vertex.x < b.vertex.x;
@@ -36,18 +35,19 @@ vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float overArea) {
   return g;
 }
 
-// The planes of three corners that snap, which it puts in order; the rest is left open.
+// The planes of three corners that snap; the rest is left open. Puts the nearest corner first: triangles
+// on the same three points then get the same depths, in whatever order they list them. (The order of the
+// other two does not matter: it turns signs about, and roundings are symmetric.)
 ShadeTriangle regularPlanes(inout PlaneCorner first, inout PlaneCorner second, inout PlaneCorner third) {
   order(first, second);
-  order(second, third);
-  order(first, second);
+  order(first, third);
   const vec3 a = first.vertex.xyz, b = second.vertex.xyz, c = third.vertex.xyz;
   ShadeTriangle t;
   precise const vec2 d1 = b.xy - a.xy;
   precise const vec2 d2 = c.xy - a.xy;
   precise const float area = d1.x * d2.y - d1.y * d2.x;
   t.anchor = a.xy;
-  t.minInvW = c.z;
+  t.minInvW = min(b.z, c.z);
   t.invW = a.z;
   t.weights = vec2(0.0);
   // Thinner than rounding: the nearest corner's attributes throughout.

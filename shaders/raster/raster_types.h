@@ -20,8 +20,6 @@ using uvec4 = glm::uvec4;
 #define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
 #define LARGE_GROUP 128u         // invocations of a workgroup of bin_large
 #define LARGE_GROUPS 1024u       // of them: enough to fill a large GPU, and quick to start for nothing
-#define IRREGULAR_GROUP 64u      // invocations of a workgroup of irregular.comp
-#define IRREGULAR_GROUPS 64u     // of them
 #define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
@@ -53,10 +51,9 @@ struct ScreenVertex {
 };
 
 #ifndef __cplusplus
-// Coverage of one triangle: snapped vertices in 1/256 pixel, positively oriented.
+// Coverage of one triangle: snapped vertices in 1/256 pixel.
 struct RasterTriangle {
   ivec2 v[3];
-  bool isEmpty;  // no area
 };
 #endif
 
@@ -76,13 +73,13 @@ struct ShadeTriangle {
 };
 
 // Vertices in homogeneous pixels (x / w = pixels), for the few triangles that cannot be snapped:
-// 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented, like RasterTriangle.
+// 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented.
 struct IrregularTriangle {
   vec3 p[3];
   ivec2 snapped[3];  // where `snaps` has a bit
   uint snaps;
   uint firstBin, lastBin;  // of those that it may overlap, x | y << 16
-  ShadeTriangle shading;   // until irregular.comp: just the number of its quad
+  ShadeTriangle shading;
 };
 
 // The primitives of a bin: quads (small) and single triangles (large), in the list of entries.
@@ -119,7 +116,7 @@ struct Dispatch {
 struct RasterCounters {
   uint smallQuads, largeQuads;  // visible; what exceeds the capacity is counted all the same
   uint largeTriangles;          // of large quads, visible
-  uint irregularQuads;          // with a half that may be irregular: two records each
+  uint irregularSeen;           // 1: some quad may be irregular, and setup.comp passed it by
   uint irregularTriangles;      // visible
   uint visibleTriangles;
   uint culledBackFacing;        // quads
@@ -182,8 +179,7 @@ struct RasterPush {
   ADDRESS_OF(RasterCounterBuffer) counters;
   uint quadCount, vertexCount;
   uint smallCapacity, largeCapacity;
-  uint irregularCapacity;  // quads
-  uint entryCapacity;
+  uint irregularCapacity, entryCapacity;
   uint backFaceCulling;
   uint countAll;       // 1: count what only the results need, too
 };

@@ -21,14 +21,17 @@ ScreenVertex loadVertex(Mesh mesh, uint vertex) {
 uvec3 cornersOf(uint slot) { return (slot & 1u) == 0u ? uvec3(0u, 1u, 2u) : uvec3(0u, 2u, 3u); }
 uvec3 verticesOf(uvec4 quad, uint slot) { return (slot & 1u) == 0u ? quad.xyz : quad.xzw; }
 
-// Of a slot that is not irregular.
+// Of a slot that is not irregular, as the scene turns it.
 RasterTriangle loadTriangle(Mesh mesh, uint slot) {
   const uvec3 vertices = verticesOf(mesh.quads.at[slot / 2u].corners, slot);
-  const ivec2 a = snapped(mesh.onScreen.at[vertices.x].xy);
-  const ivec2 b = snapped(mesh.onScreen.at[vertices.y].xy);
-  const ivec2 c = snapped(mesh.onScreen.at[vertices.z].xy);
-  const int64_t area = signedArea(a, b, c);
-  return RasterTriangle(ivec2[3](a, area > 0 ? b : c, area > 0 ? c : b), area == 0);
+  return RasterTriangle(ivec2[3](snapped(mesh.onScreen.at[vertices.x].xy), snapped(mesh.onScreen.at[vertices.y].xy),
+                                 snapped(mesh.onScreen.at[vertices.z].xy)));
+}
+
+RasterTriangle turnAbout(RasterTriangle t) { return RasterTriangle(ivec2[3](t.v[0], t.v[2], t.v[1])); }
+
+RasterTriangle positive(RasterTriangle t) {
+  return signedArea(t.v[0], t.v[1], t.v[2]) < 0 ? turnAbout(t) : t;
 }
 
 uint idOfTriangle(Mesh mesh, uint slot) {

@@ -3,16 +3,22 @@
 // into their bins, and lists what is left for binning.
 //
 // The paper compacts quads between two phases of a workgroup of 1024; here only the lists are compact.
+//
+// HAS_IRREGULAR 0: quads that may be irregular are only counted, and the frame is to be recorded again.
 #include "raster/project.glsl"
 #include "raster/together.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
 
+#if HAS_IRREGULAR
+#include "raster/irregular.glsl"
+#endif
+
 shared uint groupSmall, groupLarge, groupLargeTriangles, firstSmall, firstLarge;
 shared uint groupTriangles, groupDegenerate, groupBackFacing;
 
-// A half of a quad of which a vertex does not snap may be visible all the same: see irregular.comp.
+// A half of a quad of which a vertex does not snap may be visible all the same: see irregular.glsl.
 bool mayBeIrregular(vec4 a, vec4 b, vec4 c, uvec2 size) {
   const vec3 invW = vec3(a.z, b.z, c.z);
   if (all(greaterThan(invW, vec3(0.0)))) return false;
@@ -57,8 +63,11 @@ void main() {
     if (culled) {
       atomicAdd(groupBackFacing, 1u);
     } else if (mayBeIrregular(v[0], v[1], v[2], size) || mayBeIrregular(v[0], v[2], v[3], size)) {
-      const uint index = atomicAdd(push.counters.c.irregularQuads, 1u);
-      if (index < push.irregularCapacity) push.mesh.irregular.at[2u * index].shading.quad = quad;
+#if HAS_IRREGULAR
+      setUpIrregular(quad);
+#else
+      push.counters.c.irregularSeen = 1u;
+#endif
     } else {
       const ivec4 box0 = boxOf(v[0], v[1], v[2], size), box1 = boxOf(v[0], v[2], v[3], size);
       visible = bvec2(!isEmpty(box0), !isEmpty(box1));

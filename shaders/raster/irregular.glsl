@@ -1,11 +1,9 @@
-#version 460
-// Stage 1, quads of which a vertex cannot be snapped: one invocation each. 3D rasterization needs no
-// clipping, but everything else about such triangles differs; they are few, and a program of their own
-// keeps setup.comp lean. Whether small or not, they are binned as large.
-#include "raster/records.glsl"
+// Quads of which a vertex cannot be snapped. 3D rasterization needs no clipping, but everything else about
+// such triangles differs. They are few, and binned as large. The including shader declares `push`.
+#ifndef OITLAB_RASTER_IRREGULAR_GLSL
+#define OITLAB_RASTER_IRREGULAR_GLSL
 
-layout(local_size_x = IRREGULAR_GROUP) in;
-layout(push_constant, scalar) uniform Push { RasterPush push; };
+#include "raster/records.glsl"
 
 // Bounds of the part in front of the near plane (Blinn 1996), a pixel wider for rounding.
 ivec4 irregularBox(vec3 p[3], float near, uvec2 size) {
@@ -34,9 +32,11 @@ void addLarge(uint slot) {
   if (push.countAll != 0u) atomicAdd(push.counters.c.visibleTriangles, 1u);
 }
 
-// Whether the triangle is visible.
-bool setUp(uint slot, uint index, PackedQuad quad, float near, uvec2 size) {
-  const uvec3 vertices = verticesOf(quad.corners, slot), numbers = cornersOf(slot);
+// Lists the triangle if it is visible, and returns whether.
+bool setUpHalf(uint slot, PackedQuad quad) {
+  const uvec2 size = push.frame.c.size;
+  const float near = nearPlane(push.frame.c.viewProjection);
+  const uvec3 vertices = verticesOf(quad.corners, slot);
   vec3 p[3];
   ScreenVertex v[3];
   [[unroll]] for (int i = 0; i < 3; ++i) {
@@ -51,35 +51,34 @@ bool setUp(uint slot, uint index, PackedQuad quad, float near, uvec2 size) {
   const float facing = dot(edgePlane(p[0], p[1]), p[2]);
   const ivec4 box = facing == 0.0 ? emptyBox : irregularBox(p, near, size);
   if (isEmpty(box)) return false;
+  const uint index = atomicAdd(push.counters.c.irregularTriangles, 1u);
+  if (index >= push.irregularCapacity) return true;  // counted: the host makes room
+  addLarge(IRREGULAR | index);
+  const bool turned = facing < 0.0;
+  const vec3 p1 = turned ? p[2] : p[1], p2 = turned ? p[1] : p[2];
+  const ScreenVertex v0 = v[0], v1 = turned ? v[2] : v[1], v2 = turned ? v[1] : v[2];
   IrregularTriangle t;
   // The anchor lies amid the visible part: farther away it would cost precision.
   t.shading = irregularPlanes(p[0], p[1], p[2], vec2((box.xy + box.zw) / 2) + 0.5);
-  describe(t.shading, slot, quad, numbers, uvec3(v[0].normal, v[1].normal, v[2].normal));
-  const int second = facing > 0.0 ? 1 : 2, third = 3 - second;
-  t.p = vec3[3](p[0], p[second], p[third]);
-  t.snapped = ivec2[3](snapped(v[0].pixel), snapped(v[second].pixel), snapped(v[third].pixel));
-  t.snaps = uint(snaps(v[0])) | uint(snaps(v[second])) << 1 | uint(snaps(v[third])) << 2;
+  describe(t.shading, slot, quad, cornersOf(slot), uvec3(v[0].normal, v[1].normal, v[2].normal));
+  t.p = vec3[3](p[0], p1, p2);
+  t.snapped = ivec2[3](snapped(v0.pixel), snapped(v1.pixel), snapped(v2.pixel));
+  t.snaps = uint(snaps(v0)) | uint(snaps(v1)) << 1 | uint(snaps(v2)) << 2;
   const uvec4 bins = uvec4(box) / BIN_SIZE;
   t.firstBin = bins.x | bins.y << 16;
   t.lastBin = bins.z | bins.w << 16;
   push.mesh.irregular.at[index] = t;
-  atomicAdd(push.counters.c.irregularTriangles, 1u);
-  addLarge(IRREGULAR | index);
   return true;
 }
 
-void main() {
-  const float near = nearPlane(push.frame.c.viewProjection);
-  const uvec2 size = push.frame.c.size;
-  const uint quads = min(push.counters.c.irregularQuads, push.irregularCapacity);
-  for (uint i = gl_GlobalInvocationID.x; i < quads; i += IRREGULAR_GROUPS * IRREGULAR_GROUP) {
-    const uint number = push.mesh.irregular.at[2u * i].shading.quad;
-    const PackedQuad quad = push.mesh.quads.at[number];
-    const bool single = quad.corners.z == quad.corners.w;
-    const bool visible0 = setUp(2u * number, 2u * i, quad, near, size);
-    const bool visible1 = !single && setUp(2u * number + 1u, 2u * i + 1u, quad, near, size);
-    if (!visible0 && !visible1) continue;
-    atomicAdd(push.counters.c.largeQuads, 1u);
-    if (push.countAll != 0u && single) atomicAdd(push.counters.c.visibleDegenerate, 1u);
-  }
+void setUpIrregular(uint number) {
+  const PackedQuad quad = push.mesh.quads.at[number];
+  const bool single = quad.corners.z == quad.corners.w;
+  const bool visible0 = setUpHalf(2u * number, quad);
+  const bool visible1 = !single && setUpHalf(2u * number + 1u, quad);
+  if (!visible0 && !visible1) return;
+  atomicAdd(push.counters.c.largeQuads, 1u);
+  if (push.countAll != 0u && single) atomicAdd(push.counters.c.visibleDegenerate, 1u);
 }
+
+#endif
