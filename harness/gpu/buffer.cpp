@@ -34,6 +34,8 @@ Buffer::Buffer(const Device& device, MemoryLedger& ledger, std::string name, std
     const auto needs = buffer_.getMemoryRequirements();
     vk::MemoryPropertyFlags wanted = Memory::eDeviceLocal, preferred;
     if (kind == BufferKind::upload) wanted = Memory::eHostVisible | Memory::eHostCoherent;
+    if (kind == BufferKind::shared)
+      wanted = Memory::eDeviceLocal | Memory::eHostVisible | Memory::eHostCoherent;
     if (kind == BufferKind::readback) {
       wanted = Memory::eHostVisible | Memory::eHostCoherent;
       preferred = Memory::eHostCached;

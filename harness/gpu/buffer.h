@@ -28,6 +28,7 @@ enum class BufferKind {
   device,    ///< device-local; filled by copies or shaders
   upload,    ///< mapped, written by the CPU in order and read by the device
   readback,  ///< mapped and cached, written by the device and read by the CPU
+  shared,    ///< device-local and mapped: small things; needs Device::canMapItsMemory()
 };
 
 /// A buffer with a device address: shaders reach it through push constants, without descriptors.
@@ -48,7 +49,7 @@ class Buffer {
   vk::Buffer vk() const { return *buffer_; }
   explicit operator bool() const { return bytes_ != 0; }
 
-  /// The mapped memory of upload and readback buffers, as `T`s.
+  /// The mapped memory of all but device buffers, as `T`s.
   template <typename T>
   std::span<T> mapped() const {
     return {static_cast<T*>(mapped_), static_cast<std::size_t>(bytes_ / sizeof(T))};

@@ -248,6 +248,14 @@ std::uint32_t Device::memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags
   fail<DeviceError>("{} has no memory of the kind {}", info_.name, to_string(wanted));
 }
 
+bool Device::canMapItsMemory() const {
+  using Memory = vk::MemoryPropertyFlagBits;
+  const auto wanted = Memory::eDeviceLocal | Memory::eHostVisible | Memory::eHostCoherent;
+  for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+    if ((memory_.memoryTypes[i].propertyFlags & wanted) == wanted) return true;
+  return false;
+}
+
 vk::Format Device::supportedFormat(std::initializer_list<vk::Format> formats,
                                    vk::FormatFeatureFlags uses) const {
   for (const vk::Format format : formats)

@@ -88,6 +88,9 @@ class Device {
   /// Messages of the validation layers so far (warnings and errors). A clean run has none.
   std::vector<std::string> validationMessages() const;
 
+  /// Whether there is memory that is the device's own and mapped by the CPU.
+  bool canMapItsMemory() const;
+
   /// Index of a memory type that `typeBits` allows and that has `wanted`, preferring `preferred`.
   /// Throws DeviceError when there is none.
   std::uint32_t memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,

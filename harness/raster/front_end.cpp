@@ -47,9 +47,7 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       writeLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "0"}})) {
   makeQuads(scene);
   bins_ = Buffer(device, memory, "bins", std::uint64_t(bins()) * sizeof(Bin));
-  counters_ = Buffer(device, memory, "raster counters", sizeof(RasterCounters));
-  readback_ = Buffer(device, memory, "raster counters readback", sizeof(RasterCounters),
-                     BufferKind::readback);
+  counters_ = CountersBuffer(device, memory, "raster counters", sizeof(RasterCounters));
   // First guesses; the first frame tells.
   makeRoomForSmall(std::min<std::uint64_t>(quadCount_, 4096));
   makeRoomForLarge(1024);
@@ -159,7 +157,7 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
   };
   const auto compute = Stage::eComputeShader;
   frame.stage("setup", [&] {
-    std::vector<const Buffer*> zeroed = {&bins_, &counters_};
+    std::vector<const Buffer*> zeroed = {&bins_, &counters_.buffer()};
     zeroed.insert(zeroed.end(), alsoZeroed);
     zeroFill_.record(frame.commands, zeroed);
     run(project_, [&] { dispatchEach(frame.commands, vertexCount_); });
@@ -181,11 +179,6 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
     if (largeSeen_) run(writeLarge_, [&] { frame.commands.dispatch(LARGE_GROUPS, 1, 1); });
     frame.barrier(compute, compute);
   });
-}
-
-void FrontEnd::recordReadback(const Frame& frame) const {
-  frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
-                            vk::BufferCopy(0, 0, sizeof(RasterCounters)));
 }
 
 std::uint32_t FrontEnd::partCapacity() const {
@@ -230,7 +223,7 @@ void FrontEnd::addCounters(std::map<std::string, std::uint64_t>& counters) const
 
 void FrontEnd::poison(const Commands& commands, std::uint32_t pattern) const {
   for (const Buffer* buffer : {&onScreen_, &irregular_, &smallQuads_, &large_, &bins_, &entries_,
-                               &parts_, &counters_})
+                               &parts_, &counters_.buffer()})
     fillBuffer(commands, *buffer, pattern);
 }
 

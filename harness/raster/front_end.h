@@ -6,6 +6,7 @@
 #include "gpu/pipeline.h"
 #include "gpu/zero_fill.h"
 #include "raster/raster_types.h"
+#include "render/counters_buffer.h"
 #include "render/frame.h"
 
 namespace oitlab::raster {
@@ -34,15 +35,11 @@ class FrontEnd {
   /// Zeroes `alsoZeroed` (at most two) on the way, and finishes a target that is not ready.
   void record(const Frame& frame, std::initializer_list<const Buffer*> alsoZeroed = {});
 
-  /// Records, at the end of a frame, the copy that counted() reads: from the transfer stage, after
-  /// a barrier of the caller's and before one to the host.
-  void recordReadback(const Frame& frame) const;
-
   /// Once the device is done: makes room where room was short. True: record again.
   bool grow();
 
-  /// The counts of the last frame.
-  const RasterCounters& counted() const { return readback_.mapped<RasterCounters>()[0]; }
+  /// The counts of the last frame, if that ended with recordReadback() of counters().
+  const RasterCounters& counted() const { return counters_.read<RasterCounters>(); }
 
   /// Adds the counters of the stages, by the names of the results.
   void addCounters(std::map<std::string, std::uint64_t>& counters) const;
@@ -51,7 +48,7 @@ class FrontEnd {
   RasterPush addresses(const Frame& frame) const;
 
   /// Of the counters' `low` and `high` dispatches.
-  vk::Buffer counters() const { return counters_.vk(); }
+  const CountersBuffer& counters() const { return counters_; }
   std::uint32_t bins() const { return binColumns_ * binRows_; }
   std::uint32_t inputQuads() const { return quadCount_; }
 
@@ -83,7 +80,8 @@ class FrontEnd {
   ZeroFill zeroFill_;
   Pipeline project_, setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
   Buffer quads_, onScreen_, irregular_, smallQuads_, large_;
-  Buffer bins_, entries_, parts_, counters_, readback_;
+  Buffer bins_, entries_, parts_;
+  CountersBuffer counters_;
 };
 
 }  // namespace oitlab::raster

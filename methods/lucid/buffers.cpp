@@ -11,8 +11,6 @@ Buffers::Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfB
       filterJobs(device, memory, "depth filter jobs", halfBlocks * sizeof(PixelJob)),
       binBlocks(device, memory, "half-blocks of high bins", halfBlocks * sizeof(BinBlock)),
       counters(device, memory, "lucid counters", sizeof(LucidCounters)),
-      readback(device, memory, "lucid counters readback", sizeof(LucidCounters),
-               BufferKind::readback),
       device_(device),
       memory_(memory) {
   // First guesses; the first frame tells.
@@ -62,7 +60,7 @@ std::uint64_t Buffers::scratchBytes() const {
 
 void Buffers::poison(const Commands& commands, std::uint32_t pattern) const {
   for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &partLists, &repairs,
-                               &counters, &deepPixels, &nodes})
+                               &counters.buffer(), &deepPixels, &nodes})
     if (*buffer) fillBuffer(commands, *buffer, pattern);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gpu/buffer.h"
+#include "render/counters_buffer.h"
 
 namespace oitlab::lucid {
 
@@ -22,8 +23,9 @@ struct Buffers {
   /// Fills everything that a frame must write before it reads, for a test that it does.
   void poison(const Commands& commands, std::uint32_t pattern) const;
 
-  Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs, counters, readback;
+  Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs;
   Buffer deepPixels, nodes;
+  CountersBuffer counters;
   std::uint32_t listCapacity = 0, repairCapacity = 0, deepCapacity = 0, nodeCapacity = 0;
 
  private:

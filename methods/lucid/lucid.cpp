@@ -59,7 +59,7 @@ class Lucid : public Method {
 
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
-    frontEnd_->record(frame, {&buffers_->counters, &buffers_->binBlocks});
+    frontEnd_->record(frame, {&buffers_->counters.buffer(), &buffers_->binBlocks});
     const raster::RasterPush front = frontEnd_->addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
@@ -86,15 +86,11 @@ class Lucid : public Method {
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, push);
     });
-    frame.barrier(compute, Stage::eTransfer);
-    frontEnd_->recordReadback(frame);
-    frame.commands.copyBuffer(buffers_->counters.vk(), buffers_->readback.vk(),
-                              vk::BufferCopy(0, 0, sizeof(LucidCounters)));
-    frame.barrier(Stage::eTransfer, Stage::eHost);
+    recordReadback(frame, {&frontEnd_->counters(), &buffers_->counters});
   }
 
   Status status() override {
-    const LucidCounters& c = buffers_->readback.mapped<LucidCounters>()[0];
+    const LucidCounters& c = buffers_->counters.read<LucidCounters>();
     bool again = findNeeded(c);
     if (frontEnd_->grow()) {
       makeRoomForParts();
@@ -181,7 +177,7 @@ class Lucid : public Method {
                           .near = frame.camera.near,
                           .size = {frame.target.width(), frame.target.height()}};
     auto run = [&](std::size_t pass, std::size_t offset) {
-      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_->counters(), offset);
+      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_->counters().vk(), offset);
     };
     if (needed_.highBins) run(1, offsetof(RasterCounters, high));
     run(0, offsetof(RasterCounters, low));
