@@ -14,7 +14,7 @@ Buffers::Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfB
       device_(device),
       memory_(memory) {
   // First guesses; the first frame tells.
-  makeRoomForLists(halfBlocks);
+  makeRoomForLists(halfBlocks, 1024);
   makeRoomForRepairs(1024);
 }
 
@@ -23,14 +23,17 @@ void Buffers::makeRoomForParts(std::uint64_t parts) {
   partLists = Buffer(device_, memory_, "lists of parts", parts * sizeof(PartLists));
 }
 
-void Buffers::makeRoomForLists(std::uint64_t entries) {
-  if (entries > ~0u / 2)
-    fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", entries);
+void Buffers::makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t kept) {
+  if (triHalfBlocks >= ~0u)
+    fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", triHalfBlocks);
+  triHalfBlocks += triHalfBlocks % 2;
   list = Buffer();  // give the old ones back first: both may not fit
   keys = Buffer();
-  list = Buffer(device_, memory_, "tri-half-blocks", 2 * entries * sizeof(TriHalfBlock));
-  keys = Buffer(device_, memory_, "depth keys", entries * sizeof(std::uint32_t));
-  listCapacity = std::uint32_t(entries);
+  list = Buffer(device_, memory_, "tri-half-blocks",
+                triHalfBlocks * sizeof(TriHalfBlock) + kept * sizeof(glm::uvec4));
+  keys = Buffer(device_, memory_, "depth keys", triHalfBlocks * sizeof(std::uint32_t));
+  listCapacity = std::uint32_t(triHalfBlocks);
+  keptCapacity = std::uint32_t(kept);
 }
 
 void Buffers::makeRoomForRepairs(std::uint64_t jobs) {

@@ -13,7 +13,8 @@ struct Buffers {
   Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfBlocks);
 
   void makeRoomForParts(std::uint64_t parts);
-  void makeRoomForLists(std::uint64_t triHalfBlocks);
+  /// `kept`: those of high bins.
+  void makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t kept);
   void makeRoomForRepairs(std::uint64_t jobs);
   void makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments);
 
@@ -26,7 +27,7 @@ struct Buffers {
   Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs;
   Buffer deepPixels, nodes;
   CountersBuffer counters;
-  std::uint32_t listCapacity = 0, repairCapacity = 0, deepCapacity = 0, nodeCapacity = 0;
+  std::uint32_t listCapacity = 0, keptCapacity = 0, repairCapacity = 0, deepCapacity = 0, nodeCapacity = 0;
 
  private:
   const Device& device_;

@@ -97,8 +97,10 @@ class Lucid : public Method {
       if (frontEnd_->hasIrregular() && !programs_.irregular) makePrograms_(true);
       return {.recordAgain = true};
     }
-    if (c.triHalfBlocks > buffers_->listCapacity) {
-      buffers_->makeRoomForLists(withSlack(c.triHalfBlocks));
+    if (c.triHalfBlocks > buffers_->listCapacity || c.kept > buffers_->keptCapacity) {
+      const std::uint64_t list = buffers_->listCapacity, kept = buffers_->keptCapacity;
+      buffers_->makeRoomForLists(c.triHalfBlocks > list ? withSlack(c.triHalfBlocks) : list,
+                                 c.kept > kept ? withSlack(c.kept) : kept);
       return {.recordAgain = true};
     }
     if (c.repairJobs > buffers_->repairCapacity) {
@@ -163,6 +165,7 @@ class Lucid : public Method {
   void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
     const auto compute = Stage::eComputeShader;
     const BlocksPush push{.mesh = front.mesh,
+                          .frame = front.frame,
                           .entries = front.entries,
                           .parts = front.parts,
                           .rasterCounters = front.counters,
@@ -174,8 +177,7 @@ class Lucid : public Method {
                           .partLists = buffers_->partLists.address(),
                           .counters = buffers_->counters.address(),
                           .listCapacity = buffers_->listCapacity,
-                          .near = frame.camera.near,
-                          .size = {frame.target.width(), frame.target.height()}};
+                          .keptCapacity = buffers_->keptCapacity};
     auto run = [&](std::size_t pass, std::size_t offset) {
       dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_->counters().vk(), offset);
     };

@@ -189,10 +189,19 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
     // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
     // as much a sample.
     if (4u * b.samples >= OWNERS * visits) {
+#if INTERPOLATES == 0
+      // All at once. Where more is prepared, the registers to keep it in cost more than that gains.
+      Prepared ready;
+      if (item.mask != 0u) ready = prepare(item.triangle, corner);
+#endif
       for (uint part = 0u; part < b.size; part += PREPARED_COUNT) {
         const uint mine = b.place - b.at - part;  // wraps where it is of an earlier part
-        if (item.mask != 0u && mine < PREPARED_COUNT)
-          storePrepared(team * PREPARED_COUNT + mine, prepare(item.triangle, corner));
+        if (item.mask != 0u && mine < PREPARED_COUNT) {
+#if INTERPOLATES
+          const Prepared ready = prepare(item.triangle, corner);
+#endif
+          storePrepared(team * PREPARED_COUNT + mine, ready);
+        }
         teamBarrier();
         const uint here = min(b.size - part, PREPARED_COUNT);
         turns += here;

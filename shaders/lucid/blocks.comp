@@ -35,9 +35,13 @@ ivec2 cornerIn(ivec2 region, uint block) {
                         block / HALF_BLOCKS_ACROSS * HALF_BLOCK_HEIGHT);
 }
 
-void writeItem(ivec2 region, uint slot, uint mask, uint block, uint place) {
+uint keyOf(ivec2 region, uint slot, uint mask, uint block) {
+  return sortKey(push.mesh, slot, cornerIn(region, block), mask);
+}
+
+void writeItem(uint slot, uint mask, uint key, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
-  push.keys.at[starts[block] + place] = sortKey(push.mesh, slot, cornerIn(region, block), mask);
+  push.keys.at[starts[block] + place] = key;
 }
 
 // `number`: of the triangle in its part.
@@ -50,7 +54,7 @@ void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 m
     if (masks[c] == 0u) continue;
     const uint block = uint(strip) * HALF_BLOCKS_ACROSS + c;
     if (write) {
-      writeItem(span.region, slot, masks[c], block, atomicAdd(cursors[block], 1u));
+      writeItem(slot, masks[c], keyOf(span.region, slot, masks[c], block), block, atomicAdd(cursors[block], 1u));
       continue;
     }
 #if PASS != 2
@@ -73,13 +77,22 @@ void walk(bool write, Span span) {
   }
 }
 
-void writeKeptItem(Span span, uint mask, uint place) {
-  const uint number = bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT);
-  writeItem(span.region, slots[number], mask, place & (HALF_BLOCKS - 1u), place >> PLACE_SHIFT);
+// What is kept here, as it is written or handed on to PASS 2.
+uvec4 keptItem(Span span, uint k) {
+  const uint place = keptPlaces[k], block = place & (HALF_BLOCKS - 1u);
+  const uint slot = slots[bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT)];
+  return uvec4(keptMasks[k], slot, keyOf(span.region, slot, keptMasks[k], block),
+               block | place >> PLACE_SHIFT << KEPT_PLACE_SHIFT);
 }
 
+void writeKeptItem(uvec4 item) {
+  writeItem(item.y, item.x, item.z, item.w & (HALF_BLOCKS - 1u), item.w >> KEPT_PLACE_SHIFT);
+}
+
+KeptBuffer keptBuffer() { return KeptBuffer(uint64_t(push.list) + 8ul * push.listCapacity); }
+
 uint halfBlocksOfFrame() {
-  const uvec2 grid = (push.size + BIN_SIZE - 1u) / BIN_SIZE;
+  const uvec2 grid = (push.frame.c.size + BIN_SIZE - 1u) / BIN_SIZE;
   return grid.x * grid.y * HALF_BLOCKS;
 }
 
@@ -131,11 +144,11 @@ void makeLists(uint number) {
 // `place`: of the part among those of high bins.
 void goThrough(Part part, uint place) {
   const uint self = gl_LocalInvocationIndex;
-  const uvec2 grid = (push.size + BIN_SIZE - 1u) / BIN_SIZE;
+  const uvec2 grid = (push.frame.c.size + BIN_SIZE - 1u) / BIN_SIZE;
   Span span;
   span.part = part;
   span.region = ivec2(uvec2(part.bin % grid.x, part.bin / grid.x) * BIN_SIZE);
-  span.extent = min(ivec2(push.size) - span.region, ivec2(BIN_SIZE));
+  span.extent = min(ivec2(push.frame.c.size) - span.region, ivec2(BIN_SIZE));
   span.first = part.number * PART_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
   span.count = min(2u * part.quads + part.triangles - span.first, PART_TRIANGLES);
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
@@ -143,10 +156,10 @@ void goThrough(Part part, uint place) {
 #if PASS == 2
   const uint keptThere = push.partLists.at[place].kept, keptAt = push.partLists.at[place].keptFirst;
   const bool again = keptThere > KEPT;
+  if (again) findStrips(span);
 #else
-  const bool again = true;
+  findStrips(span);
 #endif
-  findStrips(span, again);
   const uint own = part.bin * HALF_BLOCKS + self;
 #if PASS != 2
   walk(false, span);
@@ -159,7 +172,7 @@ void goThrough(Part part, uint place) {
   if (kept > KEPT) {
     walk(true, span);
   } else {
-    for (uint k = self; k < kept; k += GROUP) writeKeptItem(span, keptMasks[k], keptPlaces[k]);
+    for (uint k = self; k < kept; k += GROUP) writeKeptItem(keptItem(span, k));
   }
 #elif PASS == 1
   if (self < HALF_BLOCKS) {
@@ -173,13 +186,13 @@ void goThrough(Part part, uint place) {
     last = uint(atomicAdd(push.binBlocks.at[part.bin * HALF_BLOCKS].partsDone, 1u) + 1u == parts);
     memoryBarrierBuffer();
     keptFirst = kept > KEPT ? 0u : atomicAdd(push.counters.c.kept, kept);
+    if (kept <= KEPT && keptFirst + kept > push.keptCapacity) atomicMax(push.counters.c.overflow, 1u);
     push.partLists.at[place].kept = kept;
     push.partLists.at[place].keptFirst = keptFirst;
   }
   barrier();
-  if (kept <= KEPT && keptFirst + kept <= push.listCapacity)
-    for (uint k = self; k < kept; k += GROUP)
-      push.list.at[push.listCapacity + keptFirst + k] = uvec2(keptMasks[k], keptPlaces[k]);
+  if (kept <= KEPT && keptFirst + kept <= push.keptCapacity)
+    for (uint k = self; k < kept; k += GROUP) keptBuffer().at[keptFirst + k] = keptItem(span, k);
   if (last == 0u) return;  // the same for all
   if (self < HALF_BLOCKS) {
     memoryBarrierBuffer();
@@ -194,10 +207,7 @@ void goThrough(Part part, uint place) {
   if (again) {
     walk(true, span);
   } else {
-    for (uint k = self; k < keptThere; k += GROUP) {
-      const uvec2 item = push.list.at[push.listCapacity + keptAt + k];
-      writeKeptItem(span, item.x, item.y);
-    }
+    for (uint k = self; k < keptThere; k += GROUP) writeKeptItem(keptBuffer().at[keptAt + k]);
   }
 #endif
 }

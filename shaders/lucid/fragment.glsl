@@ -82,8 +82,7 @@ float opaqueDepthAt(ivec2 place) {
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 
-Prepared prepare(uint slot, ivec2 corner) {
-  const ShadeTriangle s = loadShading(push.mesh, slot);
+Prepared prepare(ShadeTriangle s, ivec2 corner) {
   const GpuMaterial material = push.frame.c.materials.at[s.material];
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
   const vec2 bounds = boundsOfInvW(s);
@@ -127,6 +126,8 @@ Prepared prepare(uint slot, ivec2 corner) {
   p.n2 = n2;
   return p;
 }
+
+Prepared prepare(uint slot, ivec2 corner) { return prepare(loadShading(push.mesh, slot), corner); }
 
 float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.range.x, p.range.y, pixel); }
 uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }

@@ -51,8 +51,12 @@ struct BinBlock {
 // Of each part of a high bin, from counting to writing.
 struct PartLists {
   uint first[HALF_BLOCKS];  // places of its tri-half-blocks in the half-blocks' lists
-  uint kept, keptFirst;     // what it kept, and where, behind the lists; none where it was too much
+  uint kept, keptFirst;     // what it kept, and where; none where it was too much
 };
+
+// A tri-half-block on its way from counting to writing: mask; slot; depth key; half-block of the bin,
+// and place in its part's share of that half-block's list.
+#define KEPT_PLACE_SHIFT 5
 
 // Pixels of a half-block to be blended again, by the depth filter or in exact order.
 struct PixelJob {
@@ -77,7 +81,7 @@ struct LucidCounters {
   uint triHalfBlocks;          // of all lists: more than the capacity means overflow
   uint orderedLists;           // half-blocks of at most ORDERED_LIST
   uint lowLists, highLists;    // longer ones, and those of more than LOW_LIST
-  uint kept;                   // by parts of high bins, all together: at most triHalfBlocks
+  uint kept;                   // by parts of high bins: more than the capacity means overflow
   uint overflow;               // 1: some list does not fit, and none is to be read
   uint walked, expected;       // entries gone through and entries there were: equal, or loops ended early
   uint blended;                // tri-half-blocks gone through by the raster stages; see VERIFY_LOOPS
@@ -99,6 +103,7 @@ struct LucidCounters {
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer TriHalfBlockBuffer { uvec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer KeptBuffer { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HalfBlockBuffer { HalfBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBlockBuffer { BinBlock at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PartListsBuffer { PartLists at[]; };
@@ -109,19 +114,19 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DeepPixelBuf
 
 struct BlocksPush {
   Mesh mesh;
+  ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(WordBuffer) entries;
   ADDRESS_OF(PartBuffer) parts;
   ADDRESS_OF(RasterCounterBuffer) rasterCounters;
-  ADDRESS_OF(TriHalfBlockBuffer) list;  // of listCapacity; behind it as many places for what is kept
+  ADDRESS_OF(TriHalfBlockBuffer) list;
   ADDRESS_OF(WordBuffer) keys;         // parallel to list: depth to sort by
   ADDRESS_OF(HalfBlockBuffer) blocks;  // ordered ones from 0 up, high ones from the end down
   ADDRESS_OF(PixelJobBuffer) filterJobs;
   ADDRESS_OF(BinBlockBuffer) binBlocks;
   ADDRESS_OF(PartListsBuffer) partLists;  // of each part of a high bin
   ADDRESS_OF(LucidCounterBuffer) counters;
-  uint listCapacity;
-  float near;       // distance of the near plane
-  uvec2 size;       // of the frame, pixels
+  uint listCapacity;  // of list, even; the kept tri-half-blocks lie behind that
+  uint keptCapacity;
 };
 
 struct BlendPush {

@@ -46,8 +46,8 @@ uvec2 stripsOf(Span span, uint slot) {
   return uvec2(first | turned, last - first + 1u);
 }
 
-// Fills `slots` and, if there is to be a walk, `begins` and `strips`. All invocations take part.
-void findStrips(Span span, bool walks) {
+// Fills `slots`, `begins` and `strips`. All invocations take part.
+void findStrips(Span span) {
   const uint self = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
   uvec2 reached[RUN];
   uint own = 0u;
@@ -57,7 +57,7 @@ void findStrips(Span span, bool walks) {
     if (number < span.count) {
       const uint slot = slotOf(span.part, span.first + number);
       slots[number] = slot;
-      if (walks) reached[r] = stripsOf(span, slot);
+      reached[r] = stripsOf(span, slot);
     }
     own += reached[r].y;
   }
@@ -86,7 +86,7 @@ uvec4 coverStrip(Span span, int strip, uint slot, bool turned) {
 #if HAS_IRREGULAR
   if (isIrregular(slot)) {
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
-      rows[row] = irregularRow(push.mesh.irregular, slot, push.near, span.region, 4 * strip + row);
+      rows[row] = irregularRow(push.mesh.irregular, slot, nearPlane(push.frame.c.viewProjection), span.region, 4 * strip + row);
   } else
 #endif
   {
