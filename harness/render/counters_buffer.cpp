@@ -5,8 +5,7 @@ namespace oitlab {
 CountersBuffer::CountersBuffer(const Device& device, MemoryLedger& ledger, const std::string& name,
                                std::uint64_t bytes, bool mapped)
     : counters_(device, ledger, name, bytes, mapped ? BufferKind::shared : BufferKind::device) {
-  if (!mapped)
-    readback_ = Buffer(device, ledger, name + " readback", bytes, BufferKind::readback);
+  if (!mapped) readback_ = Buffer(device, ledger, name + " readback", bytes, BufferKind::readback);
 }
 
 void recordReadback(const Frame& frame, std::initializer_list<const CountersBuffer*> counters) {

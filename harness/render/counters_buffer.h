@@ -7,9 +7,9 @@
 
 namespace oitlab {
 
-/// What shaders count in a frame, for the CPU to read after it. In memory of the device that the CPU
-/// can map it is read where it is; where a device has none such, from a copy, which costs a frame
-/// some microseconds.
+/// What shaders count in a frame, for the CPU to read after it. In memory of the device that the
+/// CPU can map it is read where it is; where a device has none such, from a copy, which costs a
+/// frame some microseconds.
 class CountersBuffer {
  public:
   CountersBuffer() = default;

@@ -27,7 +27,8 @@ struct Buffers {
   Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs;
   Buffer deepPixels, nodes;
   CountersBuffer counters;
-  std::uint32_t listCapacity = 0, keptCapacity = 0, repairCapacity = 0, deepCapacity = 0, nodeCapacity = 0;
+  std::uint32_t listCapacity = 0, keptCapacity = 0, repairCapacity = 0, deepCapacity = 0,
+                nodeCapacity = 0;
 
  private:
   const Device& device_;

@@ -94,13 +94,12 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   // A workgroup a part of a bin. On a CPU a large one is no faster.
   const char* group = isWide ? "256u" : "64u";
   for (std::size_t pass = 0; pass < blocks.size(); ++pass)
-    blocks[pass] =
-        program("lucid/blocks.comp", with(common, {{"PASS", std::to_string(pass)},
-                                                   {"LOW_TEAMS", lowTeams},
-                                                   {"ORDERED_TEAMS", orderedTeams},
-                                                   {"GROUP", group},
-                                                   {"FIRST_LIST", ordersFirst ? "ORDERED_LIST"
-                                                                              : "0u"}}));
+    blocks[pass] = program("lucid/blocks.comp",
+                           with(common, {{"PASS", std::to_string(pass)},
+                                         {"LOW_TEAMS", lowTeams},
+                                         {"ORDERED_TEAMS", orderedTeams},
+                                         {"GROUP", group},
+                                         {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}}));
   const std::int64_t filter = parameters.integer("depth_filter");
   ordered = raster("ordered", orderedTeams, 1);
   lowRaster = raster("low", lowTeams, filter);

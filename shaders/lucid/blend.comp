@@ -19,7 +19,10 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 #include "lucid/prepared.glsl"
 #include "lucid/samples.glsl"
 #if ORDERED
-#include "lucid/sort.glsl"
+#include "lucid/short_list.glsl"
+#else
+// In the list, of the i-th tri-half-block from the front.
+uint placeOf(HalfBlock block, uint i) { return push.keys.at[block.first + i]; }
 #endif
 
 shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
@@ -79,14 +82,6 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   }
   return taken;
 }
-
-// Of the i-th tri-half-block from the front, in the list.
-#if ORDERED
-uint placeMask;
-uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & placeMask; }
-#else
-uint placeOf(HalfBlock block, uint i) { return push.keys.at[block.first + i]; }
-#endif
 
 // Places of the coverage masks that group g of a team's pixels has.
 uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g); }
@@ -265,12 +260,12 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
 
 void blendHalfBlock(HalfBlock block, uint pixels) {
 #if ORDERED
-  placeMask = sortList(gl_SubgroupID * LIST, block);
+  orderList(block);
 #endif
   const uint invalid = subgroupOr(sweep(block, cornerOf(block.number, push.size), pixels));
   teamBarrier();
 #if ORDERED
-  if (invalid != 0u) storeOrder(gl_SubgroupID * LIST, block, placeMask);
+  if (invalid != 0u) storeOrder(block);
 #endif
   if (gl_SubgroupInvocationID == 0u && invalid != 0u) {
 #if ORDERED

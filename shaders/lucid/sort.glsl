@@ -3,25 +3,12 @@
 #ifndef OITLAB_LUCID_SORT_GLSL
 #define OITLAB_LUCID_SORT_GLSL
 
+#include "lucid/pack_key.glsl"
 #include "lucid/team.glsl"
-
-// Behind everything.
-const uint padding = 0xffffffffu;
 
 shared uint keys[TEAMS * LIST];
 
 #define RANKED 2u  // keys of a lane up to which counting is quicker
-
-// Keys of fixed width: the depth within the list's range in the high bits, front first, and the place
-// in the list in the low ones, as the paper packs them (section 2, phase 2). Equal depths come out in
-// any order: the depth filter puts these right, or the repair.
-//
-// bits: that the places need. depths: larger is nearer, within [low, high].
-uint packKey(float depth, float low, float high, uint place, uint bits) {
-  const float behind = high > low ? clamp((high - depth) / (high - low), 0.0, 1.0) : 0.0;
-  const uint steps = (1u << (31u - bits)) - 1u;  // 31, not 32: below `padding` in any case
-  return min(uint(behind * float(steps)), steps) << bits | place;
-}
 
 // Sorts keys[first, first + count), ascending; count <= LIST. All lanes of the subgroup take part.
 void sortKeys(uint first, uint count) {
@@ -82,12 +69,6 @@ uint sortList(uint first, HalfBlock block) {
     keys[first + i] = packKey(uintBitsToFloat(keys[first + i]), farthest, nearest, i, bits);
   sortKeys(first, block.count);
   return (1u << bits) - 1u;
-}
-
-// Leaves the order for others, in place of the depths.
-void storeOrder(uint first, HalfBlock block, uint placeMask) {
-  for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
-    push.keys.at[block.first + i] = keys[first + i] & placeMask;
 }
 
 #endif

@@ -1,7 +1,9 @@
 #version 460
 // Stage 3, phase 2: sorts the lists that ordered raster does not, a subgroup a half-block, and leaves
-// their order in place of the depths. In a program of its own: keys take shared memory, which raster needs
-// for other things (docs/performance.md).
+// their order in place of the depths. In a program of its own: keys take registers or shared memory, which
+// raster needs for other things (docs/performance.md). Registers where a lane has 16 keys of LOW_LIST at most;
+// with SMALL_SUBGROUP it has more. 32, which HIGH would take, came out of NVIDIA's compiler (580.159.04) in a
+// wrong order: lucid_sort_test.cpp found it.
 //
 // HIGH 1: lists of more than LOW_LIST, of which those that are too long here need no order (blend.comp).
 #include "lucid/half_block.glsl"
@@ -9,14 +11,45 @@
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { BlendPush push; };
 
+#if SMALL_SUBGROUP || HIGH
 #include "lucid/sort.glsl"
 
 void sortHalfBlock(HalfBlock block) {
   const uint first = gl_SubgroupID * LIST;
   const uint placeMask = sortList(first, block);
-  storeOrder(first, block, placeMask);
+  for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
+    push.keys.at[block.first + i] = keys[first + i] & placeMask;
   teamBarrier();
 }
+#else
+#define SORT_KEYS 4u
+#define WITHIN SORT_4
+#define MERGE MERGE_4
+#define EACH EACH_4
+#define SORT sort4
+#define STORE store4
+#include "lucid/register_sort.glsl"
+#define SORT_KEYS 8u
+#define WITHIN SORT_8
+#define MERGE MERGE_8
+#define EACH EACH_8
+#define SORT sort8
+#define STORE store8
+#include "lucid/register_sort.glsl"
+#define SORT_KEYS 16u
+#define WITHIN SORT_16
+#define MERGE MERGE_16
+#define EACH EACH_16
+#define SORT sort16
+#define STORE store16
+#include "lucid/register_sort.glsl"
+
+void sortHalfBlock(HalfBlock block) {
+  if (block.count <= 4u * SUBGROUP_SIZE) store4(block);
+  else if (block.count <= 8u * SUBGROUP_SIZE) store8(block);
+  else store16(block);
+}
+#endif
 
 TEAM_MAIN void main() {
   if (push.counters.c.overflow != 0u) return;

@@ -1,0 +1,58 @@
+// The order of a list of at most ORDERED_LIST, for the subgroup that goes through it. The including
+// shader declares a `push` that has keys.
+#ifndef OITLAB_LUCID_SHORT_LIST_GLSL
+#define OITLAB_LUCID_SHORT_LIST_GLSL
+
+#if SMALL_SUBGROUP
+#include "lucid/sort.glsl"
+
+uint placeMask;
+
+void orderList(HalfBlock block) { placeMask = sortList(gl_SubgroupID * LIST, block); }
+
+// In the list, of the i-th tri-half-block from the front: i = n * SUBGROUP_SIZE + lane.
+uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & placeMask; }
+
+#else
+#define SORT_KEYS 1u
+#define WITHIN SORT_1
+#define MERGE MERGE_1
+#define EACH EACH_1
+#define SORT sort1
+#define STORE store1
+#include "lucid/register_sort.glsl"
+#define SORT_KEYS 2u
+#define WITHIN SORT_2
+#define MERGE MERGE_2
+#define EACH EACH_2
+#define SORT sort2
+#define STORE store2
+#include "lucid/register_sort.glsl"
+
+uint firstPlace, secondPlace;  // of ranks lane and SUBGROUP_SIZE + lane
+
+void orderList(HalfBlock block) {
+  if (block.count <= SUBGROUP_SIZE) {
+    uint keys[1];
+    const uint placeMask = sort1(block, keys);
+    firstPlace = keys[0] & placeMask;
+  } else {
+    uint keys[2];
+    const uint placeMask = sort2(block, keys), lane = gl_SubgroupInvocationID, half_ = SUBGROUP_SIZE / 2u;
+    const uint even0 = subgroupShuffle(keys[0], lane / 2u), odd0 = subgroupShuffle(keys[1], lane / 2u);
+    const uint even1 = subgroupShuffle(keys[0], half_ + lane / 2u), odd1 = subgroupShuffle(keys[1], half_ + lane / 2u);
+    firstPlace = ((lane & 1u) == 0u ? even0 : odd0) & placeMask;
+    secondPlace = ((lane & 1u) == 0u ? even1 : odd1) & placeMask;
+  }
+}
+
+uint placeOf(HalfBlock block, uint i) { return i < SUBGROUP_SIZE ? firstPlace : secondPlace; }
+#endif
+
+// Leaves the order for others, in place of the depths.
+void storeOrder(HalfBlock block) {
+  for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
+    push.keys.at[block.first + i] = placeOf(block, i);
+}
+
+#endif

@@ -1,0 +1,118 @@
+// The sorts of lucid's lists, on lists of their own: that in registers too, which on devices of
+// small subgroups no frame uses.
+#include <numeric>
+
+#include "lucid/lucid_types.h"
+#include "support/gpu.h"
+#include "util/random.h"
+
+namespace oitlab::testing {
+namespace {
+
+class LucidSortGpu : public GpuTest {};
+
+/// The order in which sort_lists.comp leaves lists of these depths.
+std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<float>>& lists,
+                                                 bool high, bool registers) {
+  const Device& device = sharedDevice();
+  const std::uint32_t lanes = device.info().subgroupSize;
+  const Pipeline pipeline = Pipeline::compute(device, "lucid/sort_lists.comp",
+                                              {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
+                                               {"SMALL_SUBGROUP", registers ? "0" : "1"},
+                                               {"UNIFORM_CONTROL_FLOW", "0"},
+                                               {"HIGH", high ? "1" : "0"},
+                                               {"LIST", high ? "HIGH_LIST" : "LOW_LIST"},
+                                               {"TEAMS", "1u"}},
+                                              {}, lanes);
+  std::vector<float> keys;
+  std::vector<lucid::HalfBlock> blocks;
+  for (const auto& list : lists) {
+    blocks.push_back(
+        {.number = 0, .first = std::uint32_t(keys.size()), .count = std::uint32_t(list.size())});
+    keys.insert(keys.end(), list.begin(), list.end());
+  }
+  std::vector<lucid::PixelJob> jobs;
+  for (const auto& block : blocks) jobs.push_back({block, ~0u});
+  std::reverse(blocks.begin(), blocks.end());  // long lists lie from the end down
+  lucid::LucidCounters counters{};
+  counters.lowLists = counters.highLists = counters.high.x = std::uint32_t(lists.size());
+
+  MemoryLedger memory;
+  const Buffer keyBuffer = uploadBuffer(device, memory, "keys", keys);
+  const Buffer jobBuffer = uploadBuffer(device, memory, "jobs", jobs);
+  const Buffer blockBuffer = uploadBuffer(device, memory, "blocks", blocks);
+  const Buffer counterBuffer = uploadBuffer(device, memory, "counters", std::vector{counters});
+  const std::uint64_t bytes = keys.size() * sizeof(float);
+  const Buffer back(device, memory, "back", bytes, BufferKind::readback);
+  device.runOnce([&](const Commands& commands) {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    lucid::BlendPush push{};
+    push.keys = keyBuffer.address();
+    push.blocks = blockBuffer.address();
+    push.filterJobs = jobBuffer.address();
+    push.counters = counterBuffer.address();
+    push.halfBlocks = std::uint32_t(blocks.size());
+    pipeline.bind(commands);
+    pipeline.push(commands, push);
+    commands.dispatch(std::uint32_t(lists.size()), 1, 1);
+    const vk::MemoryBarrier2 all(Stage::eComputeShader, Access::eMemoryWrite, Stage::eTransfer,
+                                 Access::eMemoryRead);
+    vk::DependencyInfo dependency;
+    dependency.setMemoryBarriers(all);
+    commands.pipelineBarrier2(dependency);
+    commands.copyBuffer(keyBuffer.vk(), back.vk(), vk::BufferCopy(0, 0, bytes));
+  });
+  std::vector<std::vector<std::uint32_t>> orders;
+  std::size_t first = 0;
+  for (const auto& list : lists) {
+    const auto all = back.mapped<std::uint32_t>();
+    orders.emplace_back(all.begin() + first, all.begin() + first + list.size());
+    first += list.size();
+  }
+  return orders;
+}
+
+void expectFrontToBack(const std::vector<float>& depths, const std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> places = order;
+  std::sort(places.begin(), places.end());
+  std::vector<std::uint32_t> all(depths.size());
+  std::iota(all.begin(), all.end(), 0u);
+  ASSERT_EQ(places, all);
+  // As fine as the bits that the places leave (pack_key.glsl).
+  const auto [low, high] = std::minmax_element(depths.begin(), depths.end());
+  const float step = (*high - *low) / float(1u << 18);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    ASSERT_GE(depths[order[i - 1]], depths[order[i]] - step) << "rank " << i;
+}
+
+TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
+  const std::uint32_t lanes = sharedDevice().info().subgroupSize;
+  Pcg32 random(7);
+  const struct {
+    const char* name;
+    bool high, registers;
+    std::uint32_t most;
+  } sorts[] = {{"in registers", false, true, 16 * lanes},
+               {"in shared memory", false, false, LOW_LIST},
+               {"long lists", true, false, HIGH_LIST}};
+  for (const auto& sort : sorts) {
+    SCOPED_TRACE(sort.name);
+    std::vector<std::vector<float>> lists;
+    for (const std::uint32_t length : {1u, 2u, 3u, lanes, 4 * lanes, 4 * lanes + 1, 8 * lanes,
+                                       8 * lanes + 1, sort.most - 1, sort.most}) {
+      std::vector<float> depths;
+      for (std::uint32_t i = 0; i < length; ++i) depths.push_back(random.uniform(0.1f, 10));
+      lists.push_back(depths);
+    }
+    lists.push_back(std::vector<float>(sort.most, 0.5f));  // all alike
+    const auto orders = ordersOf(lists, sort.high, sort.registers);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      SCOPED_TRACE(fmt::format("{} of them", lists[i].size()));
+      expectFrontToBack(lists[i], orders[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oitlab::testing
