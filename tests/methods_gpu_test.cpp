@@ -189,12 +189,19 @@ TEST_F(Methods, PipelinesAreMadeOnce) {
     other.prepare(name);
     EXPECT_EQ(pipelines.size(), made) << name;
   }
-  fixture.prepare("lucid", {{"depth_filter", "14"}});
+  // lucid makes its programs when a frame needs them.
+  const std::map<std::string, std::string> filter14 = {{"depth_filter", "14"},
+                                                       {"ordered_first", "off"}};
+  const std::map<std::string, std::string> filter15 = {{"depth_filter", "15"},
+                                                       {"ordered_first", "off"}};
+  fixture.render("lucid", filter14);
   const std::size_t before = pipelines.size();
-  fixture.prepare("lucid", {{"depth_filter", "15"}});
+  fixture.render("lucid", filter15);
   EXPECT_GT(pipelines.size(), before);
   const std::size_t made = pipelines.size();
-  half.prepare("lucid", {{"depth_filter", "15"}});
+  other.render("lucid", filter15);
+  EXPECT_EQ(pipelines.size(), made);
+  half.render("lucid", filter15);
   EXPECT_GT(pipelines.size(), made);
 }
 
