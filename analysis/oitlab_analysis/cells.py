@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas
 
 from .checks import FRAME_STATISTICS, NotACell, cell_of, check_samples
-from .clock import stages_are_slow
+from .clock import clock_line, stages_are_slow
 from .formats import one_line
 from .memory import own_memory
 from .packs import PACK_SUFFIX, read_bytes, read_pack
@@ -171,6 +171,7 @@ def flatten(cell: dict) -> dict[str, object]:
     row |= {f"counter.{key}": value for key, value in cell.get("counters", {}).items()}
     stages = cell.get("gpu_ms", {}).get("stages", {})
     row["stages_left_out"] = bool(stages) and stages_are_slow(cell)
+    row["clock_note"] = clock_line(cell)
     if row["stages_left_out"]:
         stages = {}
     # JSON objects have no order; the stages have one, and charts follow it.

@@ -163,6 +163,11 @@ def check_cell(cell: dict) -> None:
     for pointer in ("scene/detail", "device/subgroup_size"):
         _get_if_there(cell, f"/{pointer}", "a number", is_number)
     _get_if_there(cell, "/provenance/shaders", "an object of hashes", _is_flat)
+    if cell.get("clock") is not None:
+        _get(cell, "/clock", "an object of plain values", _is_flat)
+        for pointer in ("clock/rejected_blocks", "clock/unsettled_blocks"):
+            _get(cell, f"/{pointer}", "a count", lambda v: type(v) is int and v >= 0)
+        _get(cell, "/clock/settled", "true or false", lambda v: isinstance(v, bool))
     if cell["status"] != "ok":
         return
     for key in FRAME_STATISTICS:

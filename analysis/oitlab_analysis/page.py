@@ -30,7 +30,7 @@ FIGURES = (
 
 
 def html_page(
-    folder: Path, title: str, summary: str, warnings: list[str], contents: list[dict]
+    folder: Path, title: str, summary: str, clock: str, warnings: list[str], contents: list[dict]
 ) -> str:
     """The page. `contents` has for each section: `section`, `charts`, `parameters`, `unmeasured`
     and `commands`, as `report` makes them."""
@@ -42,6 +42,7 @@ def html_page(
     return environment.get_template("report.html.jinja").render(
         title=title,
         summary=summary,
+        clock=clock,
         warnings=warnings,
         figures=FIGURES,
         pictures=_json(pictures.embedded),
@@ -76,6 +77,7 @@ def _row(row: dict) -> dict[str, object]:
         "reason": texts["reason"],
         "baseline": row["baseline"] or "",
         "note": row["device_note"],
+        "clock": row["clock_note"],
         "keys": [
             (row["scene_label"], row["scene_label"], parameter_text(scene_facts(row))),
             (row["view"], row["view"], ""),

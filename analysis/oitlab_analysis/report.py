@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,11 +11,12 @@ import pandas
 
 from . import formats, images, plots
 from .cells import BadResults, Collection, Problem, collect
+from .clock import clock_summary
 from .labels import parameter_text, parameters_of, records
 from .page import html_page
 from .sections import Section, add_comparisons, make_sections, mixture_warnings
-from .table import (describe, error_caption, markdown_table, markdown_text, setting_heading,
-                    terminal_table, terminal_warnings)
+from .table import (TERMINAL_WIDTH, describe, error_caption, markdown_table, markdown_text,
+                    setting_heading, terminal_table, terminal_warnings)
 
 MOST_NAMED = 20  # files, commands: beyond these a count says enough
 
@@ -40,6 +42,7 @@ def make_report(folder: Path, metric: str = "rmse", all_charts: bool = False) ->
     if missing:
         notes.append(f"{missing} charts were left out to keep the page short: "
                      f"oitlab report {shlex.quote(str(folder))} --all-charts draws them.")
+    clock = clock_summary(list(collection.cells.values()))
 
     csv, markdown, html = folder / "cells.csv", folder / "report.md", folder / "report.html"
     table.to_csv(csv, index=False)
@@ -54,11 +57,13 @@ def make_report(folder: Path, metric: str = "rmse", all_charts: bool = False) ->
         }
         for section, section_charts in zip(sections, charts)
     ]
-    html.write_text(html_page(folder, title(sections), summary(table), notes, contents),
+    html.write_text(html_page(folder, title(sections), summary(table), clock, notes, contents),
                     encoding="utf-8")
 
     blocks = [terminal_table(section) for section in sections]
     blocks.append(terminal_warnings(notes) + f"{summary(table)}.")
+    if clock:
+        blocks[-1] += "\n" + textwrap.fill(clock, TERMINAL_WIDTH)
     text = "\n\n".join(blocks) + "\n"
     return Result(text, [html, markdown, csv], bool((table["status"] == "failed").any()))
 
@@ -92,6 +97,10 @@ def all_parameters(section: Section) -> dict[str, str]:
     return {row["label"]: parameter_text(parameters_of(row)) or "none" for row in rows}
 
 
+def place(row: dict) -> str:
+    return f"{row['scene_label']} · {row['view']} · {row['size_label']}"
+
+
 def unmeasured(section: Section) -> list[dict[str, str]]:
     """Failed and skipped cells, with what is needed to find them."""
     rows = section.table[section.table["status"] != "ok"]
@@ -100,7 +109,7 @@ def unmeasured(section: Section) -> list[dict[str, str]]:
             "status": row["status"],
             "cell": row["id"],
             "label": row["label"],
-            "setting": f"{row['scene_label']} · {row['view']} · {row['size_label']}",
+            "setting": place(row),
             "reason": describe(row)["reason"],
         }
         for row in records(rows.sort_values("status", kind="stable"))
@@ -120,12 +129,14 @@ def markdown_report(
 ) -> str:
     """The report as Markdown; pictures are relative links."""
     lines = [f"# {markdown_text(title(sections))}", "", f"{summary(collection.table)}.", ""]
+    if clock := clock_summary(list(collection.cells.values())):
+        lines += [markdown_text(clock), ""]
     lines += [f"> **Warning.** {markdown_text(w)}\n" for w in warnings]
     for section, section_charts in zip(sections, charts):
         lines += [f"## {markdown_text(section.title)}", ""]
         lines += [f"> **Warning.** {markdown_text(w)}\n" for w in section.warnings]
         lines += [f"- {name}: {markdown_text(text)}" for name, text in section.context.items()]
-        lines += ["", markdown_table(section), "", "All parameters:", ""]
+        lines += ["", markdown_table(section), "", *_markdown_clock(section), "All parameters:", ""]
         lines += [f"- {markdown_text(m)}: {markdown_text(p)}" for m, p in all_parameters(section).items()]
         lines += [""]
         for chart in section_charts:
@@ -134,6 +145,12 @@ def markdown_report(
         lines += ["### How to reproduce", "", f"At commit {markdown_text(section.context['Commit'])}:", ""]
         lines += [f"    {command}" for command in commands(collection, section)] + [""]
     return "\n".join(lines)
+
+
+def _markdown_clock(section: Section) -> list[str]:
+    lines = [f"- {markdown_text(row['label'])}, {markdown_text(place(row))}: {markdown_text(row['clock_note'])}"
+             for row in records(section.table) if row["clock_note"]]
+    return ["Cells with a note on the clock:", "", *lines, ""] if lines else []
 
 
 def _markdown_images(section: Section) -> list[str]:

@@ -1,5 +1,5 @@
 """Times that were taken while the device ran slower than it can: what counts as such, and that the
-report leaves out such stages and says so."""
+report leaves out such stages and says so; what it says of the clock that cells recorded."""
 
 import pytest
 from oitlab_analysis import bars, clock
@@ -64,3 +64,41 @@ def test_the_report_leaves_slow_stages_out_and_says_so(tmp_path):
     assert len(figure.axes) == 1, "a panel for teapot alone"
     said = " ".join(make_report(tmp_path).text.split())
     assert "Stage times of 1 of 2 cells were left out" in said and "The median frame of 1 of 2 cells" in said
+
+
+def with_clock(cell, rejected=0, unsettled=0, settled=True):
+    return cell | {"clock": {"rejected_blocks": rejected, "unsettled_blocks": unsettled, "settled": settled}}
+
+
+@pytest.mark.parametrize("record, line", [
+    ((0, 0, True), ""),
+    ((1, 0, True), "1 block left out because the clock moved meanwhile"),
+    ((0, 0, False), "stages timed below full clock, or while it moved"),
+    ((3, 2, False), "3 blocks left out because the clock moved meanwhile; "
+                    "2 blocks kept although steadily below full clock"),
+])
+def test_a_line_says_what_the_clock_did(record, line):
+    said = clock.clock_line(with_clock(make_cell(), *record))
+    assert said == (line and line + " (docs/measuring.md, At full clock)")
+
+
+def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
+    def texts():
+        terminal = " ".join(make_report(tmp_path).text.split())
+        return terminal, *((tmp_path / f"report.{kind}").read_text(encoding="utf-8") for kind in ("html", "md"))
+
+    write_cell(tmp_path, make_cell("city"))  # made before the clock was recorded
+    assert not any("full clock" in text or "§" in text for text in texts())
+    write_cell(tmp_path, with_clock(make_cell("boxes")))
+    write_cell(tmp_path, with_clock(make_cell("teapot"), rejected=3))
+    write_cell(tmp_path, with_clock(make_cell("tree"), unsettled=2, settled=False))
+    write_cell(tmp_path, make_cell("pipes") | {"clock": {"settled": True}})
+    terminal, html, markdown = texts()
+    assert "1 file in cells/ was left out" in terminal and "/clock/rejected_blocks: missing" in terminal
+    for text in (terminal, html, markdown):
+        assert "settled, at full, in 2 of the 3 cells that recorded it; 3 blocks measured again" in text
+    marked = [row for row in html.split("<tr>") if " §</td>" in row]
+    listed = [line for line in markdown.splitlines() if line.startswith("- ") and "At full clock" in line]
+    for teapot, tree in (marked, listed):
+        assert "teapot" in teapot and "3 blocks left out" in teapot
+        assert "tree" in tree and "2 blocks kept" in tree
