@@ -173,17 +173,12 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
     covered |= item.mask;
     Batch b = makeBatch(item.triangle, item.mask);
     turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
-    uint full = 0u, visits = 0u;  // visits: of triangles to groups of pixels that they cover
-    [[unroll]] for (uint g = 0u; g < GROUPS; ++g) {
-      if (HAS_THRESHOLD == 1) full |= isFull(pixels[g]) ? 1u << bitOf(g) : 0u;
-      visits += GROUPS == 1u ? b.size : subgroupBallotBitCount(subgroupBallot((item.mask & groupMask(g)) != 0u));
-    }
-    if (HAS_THRESHOLD == 1) full = subgroupOr(full & own);
 
     // Where triangles cover a good part of the pixels, each lane shades its own; where they are small,
     // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
-    // as much a sample.
-    if (4u * b.samples >= OWNERS * visits) {
+    // as much a sample. In a small subgroup the lanes' several pixels share what is prepared, and the
+    // first way is always the quicker: llvmpipe, moreover, goes through code that no lane takes.
+    if (SMALL_SUBGROUP == 1 || 4u * b.samples >= OWNERS * b.size) {
 #if INTERPOLATES == 0
       // All at once. Where more is prepared, the registers to keep it in cost more than that gains.
       Prepared ready;
@@ -208,6 +203,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
         teamBarrier();
       }
     } else {
+      const uint full = HAS_THRESHOLD == 1 ? subgroupOr(isFull(pixels[0]) ? own & 1u << bitOf(0u) : 0u) : 0u;
       turns += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
       teamBarrier();
       for (uint chunk = 0u; chunk < b.samples; chunk += OWNERS) {
@@ -226,11 +222,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
           }
         }
         teamBarrier();
-        EACH_GROUP for (uint g = 0u; g < GROUPS; ++g) {
-          Pixel p = pixels[g];
-          blendSamples(p, own, bitOf(g), opaque[g]);
-          pixels[g] = p;
-        }
+        blendSamples(pixels[0], own, bitOf(0u), opaque[0]);
         teamBarrier();
       }
     }

@@ -17,7 +17,7 @@ void main() {
   const uint columns = (size.x + BIN_SIZE - 1u) / BIN_SIZE;
   const uint triangles = min(push.counters.c.largeTriangles, push.largeCapacity);
   // Where there are fewer triangles than subgroups, several share one.
-  const uint subgroups = LARGE_GROUPS * gl_NumSubgroups, sharers = max(subgroups / max(triangles, 1u), 1u);
+  const uint subgroups = push.largeGroups * gl_NumSubgroups, sharers = max(subgroups / max(triangles, 1u), 1u);
   for (uint job = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; job < triangles * sharers;
        job += subgroups) {
     const uint slot = push.large.at[job / sharers], share = job % sharers;

@@ -19,7 +19,6 @@ using uvec4 = glm::uvec4;
 #define SETUP_GROUP 256u         // quads of one workgroup of setup
 #define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
 #define LARGE_GROUP 128u         // invocations of a workgroup of bin_large
-#define LARGE_GROUPS 1024u       // of them: enough to fill a large GPU, and quick to start for nothing
 #define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
@@ -180,6 +179,7 @@ struct RasterPush {
   uint quadCount, vertexCount;
   uint smallCapacity, largeCapacity;
   uint irregularCapacity, entryCapacity;
+  uint largeGroups;    // workgroups of bin_large
   uint backFaceCulling;
   uint countAll;       // 1: count what only the results need, too
 };
