@@ -101,7 +101,8 @@ TEST_F(LucidFrames, AnyFormat) {
   const Scene scene = randomSoup(17, 60);
   const Image exact = RenderFixture(scene, 64, 48).render("lucid").image;
   // Background and result are each rounded to the format: by half a step of 1/255 (an NVIDIA H200
-  // comes to 0.56 in all); half precision has steps of 2^-11 below 1, and llvmpipe rounds towards 0.
+  // comes to 0.56 in all); half precision has steps of 2^-11 below 1, and llvmpipe rounds towards
+  // 0.
   for (const auto& [format, error] :
        {std::pair(TargetFormat::rgba8, 1.0 / 255), {TargetFormat::rgba16f, 0x1p-10}}) {
     const Image image = RenderFixture(scene, 64, 48, {}, format).render("lucid").image;

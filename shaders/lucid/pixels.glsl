@@ -1,0 +1,97 @@
+// How fragments come to the pixels of a half-block: of triangles prepared for all of them, or as samples that
+// lanes took. The including shader declares `push` and defines SUBGROUP_SIZE, SMALL_SUBGROUP and TEAMS.
+#ifndef OITLAB_LUCID_PIXELS_GLSL
+#define OITLAB_LUCID_PIXELS_GLSL
+
+#include "lucid/depth_filter.glsl"
+#include "lucid/half_block.glsl"
+#include "lucid/prepared.glsl"
+#include "lucid/samples.glsl"
+
+shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
+
+// Pixels of a lane: one of each group. Where there are several, code is not to be made for each.
+#define GROUPS (32u / OWNERS)
+#if SMALL_SUBGROUP
+#define EACH_GROUP [[dont_unroll]]
+#else
+#define EACH_GROUP [[unroll]]
+#endif
+
+// The lane's pixel of group g: its place in the coverage masks.
+uint bitOf(uint g) { return min(gl_SubgroupInvocationID + OWNERS * g, 31u); }
+
+// Places of the coverage masks that group g of a team's pixels has.
+uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g); }
+
+// The fragment of a prepared triangle at a pixel that it covers or, for nothing, at another.
+struct Taken {
+  Fragment f;
+  bool kept;   // it is there to be pushed
+  bool blends; // and not behind the alpha threshold
+};
+
+Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
+  const Prepared t = loadPrepared(at);
+  Taken taken;
+  taken.f.invW = invWOf(t, pixel);
+  taken.f.id = idOf(t);
+  taken.f.color = vec4(0.0);
+  taken.kept = covered && !isHidden(taken.f.invW, opaque);
+  taken.blends = taken.kept && !full;
+#if HAS_TEXTURES  // not for nothing
+  if (taken.blends)
+#endif
+  {
+    const bool there = shadePrepared(t, pixel, taken.f.invW, taken.f.color);
+    taken.kept = taken.kept && (full || there);
+    taken.blends = taken.blends && there;
+  }
+  return taken;
+}
+
+// Pushes to a pixel, `bit` of those in `own`, the fragments of prepared triangles: `count` of them, the
+// first at place `at` of the batch and first of the team's prepared ones.
+void blendPrepared(inout Pixel p, uint own, uint bit, float opaque, uint at, uint count) {
+  const uint lane = gl_SubgroupInvocationID, first = gl_SubgroupID * PREPARED_COUNT;
+  const uint pixelBit = own & (1u << bit);
+  const vec2 pixel = vec2(pixelOf(bit));
+  if (SMALL_SUBGROUP == 0) {
+    // In pairs, and without branches: what the one waits for, the other has time for.
+    for (uint k = 0u; k < count; k += 2u) {
+      const uint next = min(k + 1u, count - 1u);
+      const bool full = isFull(p);
+      const Taken t0 = take(first + k, (batch[at + k].y & pixelBit) != 0u, pixel, opaque, full);
+      const Taken t1 = take(first + next, (batch[at + next].y & pixelBit) != 0u && next > k, pixel, opaque, full);
+      if (t0.kept) pushFragment(p, t0.f);
+      p.samples += uint(t0.blends);
+      if (t1.kept) pushFragment(p, t1.f);
+      p.samples += uint(t1.blends);
+    }
+  } else {
+    // There are several groups of pixels: only those that reach this one.
+    const bool reaches = lane < count && (batch[at + min(lane, count - 1u)].y & groupMask(bit / OWNERS)) != 0u;
+    for (uint rest = subgroupBallot(reaches).x; rest != 0u; rest &= rest - 1u) {
+      const uint k = findLSB(rest);
+      const Taken t = take(first + k, (batch[at + k].y & pixelBit) != 0u, pixel, opaque, isFull(p));
+      if (t.kept) pushFragment(p, t.f);
+      p.samples += uint(t.blends);
+    }
+  }
+}
+
+// Pushes to a pixel, `bit` of those in `own`, the samples that fell on it.
+void blendSamples(inout Pixel p, uint own, uint bit, float opaque) {
+  uint arrived = 0u;
+  if ((own & (1u << bit)) != 0u) arrived = samplesOf[32u * gl_SubgroupID + bit];
+  if (arrived != 0u) samplesOf[32u * gl_SubgroupID + bit] = 0u;
+  for (; arrived != 0u; arrived &= arrived - 1u) {
+    const Fragment f = loadSample(findLSB(arrived));
+    if (!isHidden(f.invW, opaque)) {
+      p.samples += uint(!isFull(p));
+      pushFragment(p, f);
+    }
+  }
+}
+
+#endif
