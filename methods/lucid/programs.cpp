@@ -74,6 +74,12 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
     for (const auto& [name, value] : more) defines[name] = value;
     return defines;
   };
+  // Programs that differ in nothing are made once for all scenes.
+  auto only = [&common](std::initializer_list<const char*> names) {
+    Defines defines;
+    for (const char* name : names) defines[name] = common.at(name);
+    return defines;
+  };
   auto raster = [&](const std::string& kind, const char* teams, std::int64_t filter) {
     return program("lucid/blend.comp",
                    with(common, {{"ORDERED", kind == "ordered" ? "1" : "0"},
@@ -86,20 +92,22 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   };
   auto sort = [&](const std::string& kind, const char* teams) {
     return program("lucid/sort_lists.comp",
-                   with(common, {{"HIGH", kind == "high" ? "1" : "0"},
-                                 {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
-                                 {"TEAMS", teams}}),
+                   with(only({"SUBGROUP_SIZE", "SMALL_SUBGROUP", "UNIFORM_CONTROL_FLOW"}),
+                        {{"HIGH", kind == "high" ? "1" : "0"},
+                         {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
+                         {"TEAMS", teams}}),
                    lanes);
   };
   // A workgroup a part of a bin. On a CPU a large one is no faster.
   const char* group = isWide ? "256u" : "64u";
   for (std::size_t pass = 0; pass < blocks.size(); ++pass)
-    blocks[pass] = program("lucid/blocks.comp",
-                           with(common, {{"PASS", std::to_string(pass)},
-                                         {"LOW_TEAMS", lowTeams},
-                                         {"ORDERED_TEAMS", orderedTeams},
-                                         {"GROUP", group},
-                                         {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}}));
+    blocks[pass] = program(
+        "lucid/blocks.comp",
+        with(only({"HAS_IRREGULAR"}), {{"PASS", std::to_string(pass)},
+                                       {"LOW_TEAMS", lowTeams},
+                                       {"ORDERED_TEAMS", orderedTeams},
+                                       {"GROUP", group},
+                                       {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}}));
   const std::int64_t filter = parameters.integer("depth_filter");
   ordered = raster("ordered", orderedTeams, 1);
   lowRaster = raster("low", lowTeams, filter);
@@ -108,7 +116,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   sortHigh = sort("high", "1u");
   repair = program("lucid/repair.comp", common, lanes);
   deepCapture = program("lucid/deep_capture.comp", common);
-  deepResolve = program("lucid/deep_resolve.comp", common);
+  deepResolve = program("lucid/deep_resolve.comp", only({"TARGET_FORMAT"}));
 }
 
 }  // namespace oitlab::lucid
