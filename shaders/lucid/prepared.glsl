@@ -12,7 +12,7 @@
 
 // Places of a team: even, since they are shaded in pairs, and with room for two words of each of 32
 // lanes (sampleWord). Few, since shared memory is what limits how many subgroups a GPU holds: an NVIDIA
-// H200 gives it 64 KiB of each multiprocessor, whatever it has.
+// H200 gives it 48 KB of each multiprocessor, whatever it has (docs/performance.md).
 #define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 14u)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 

@@ -8,7 +8,6 @@
 #ifdef __cplusplus
 namespace oitlab::raster {
 using ivec2 = glm::ivec2;
-using uvec3 = glm::uvec3;
 using uvec4 = glm::uvec4;
 #endif
 
