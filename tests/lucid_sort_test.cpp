@@ -2,6 +2,7 @@
 // small subgroups no frame uses.
 #include <numeric>
 
+#include "gpu/barrier.h"
 #include "lucid/lucid_types.h"
 #include "support/gpu.h"
 #include "util/random.h"
@@ -46,7 +47,6 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
   const Buffer back(device, memory, "back", bytes, BufferKind::readback);
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;
-    using Access = vk::AccessFlagBits2;
     lucid::BlendPush push{};
     push.keys = keyBuffer.address();
     push.blocks = blockBuffer.address();
@@ -56,12 +56,9 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
     pipeline.bind(commands);
     pipeline.push(commands, push);
     commands.dispatch(std::uint32_t(lists.size()), 1, 1);
-    const vk::MemoryBarrier2 all(Stage::eComputeShader, Access::eMemoryWrite, Stage::eTransfer,
-                                 Access::eMemoryRead);
-    vk::DependencyInfo dependency;
-    dependency.setMemoryBarriers(all);
-    commands.pipelineBarrier2(dependency);
+    memoryBarrier(commands, Stage::eComputeShader, Stage::eTransfer);
     commands.copyBuffer(keyBuffer.vk(), back.vk(), vk::BufferCopy(0, 0, bytes));
+    memoryBarrier(commands, Stage::eTransfer, Stage::eHost);
   });
   std::vector<std::vector<std::uint32_t>> orders;
   std::size_t first = 0;

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "gpu/barrier.h"
 #include "support/gpu.h"
 #include "util/random.h"
 
@@ -30,13 +31,8 @@ Sorted sortOnDevice(const std::vector<std::uint32_t>& keys) {
   const vk::BufferCopy whole(0, 0, bytes);
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;
-    using Access = vk::AccessFlagBits2;
     const auto barrier = [&](vk::PipelineStageFlags2 from, vk::PipelineStageFlags2 to) {
-      const vk::MemoryBarrier2 all(from, Access::eMemoryWrite, to,
-                                   Access::eMemoryRead | Access::eMemoryWrite);
-      vk::DependencyInfo dependency;
-      dependency.setMemoryBarriers(all);
-      commands.pipelineBarrier2(dependency);
+      memoryBarrier(commands, from, to);
     };
     commands.copyBuffer(givenKeys.vk(), sort.keys().vk(), whole);
     commands.copyBuffer(givenValues.vk(), sort.values().vk(), whole);

@@ -1,6 +1,7 @@
 #include "gpu/radix_sort.h"
 
 #include "common/sort/sort_types.h"
+#include "gpu/barrier.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -10,14 +11,8 @@ namespace {
 constexpr std::uint32_t maxGroups = 65535;
 
 void computeBarrier(const Commands& commands) {
-  using Stage = vk::PipelineStageFlagBits2;
-  using Access = vk::AccessFlagBits2;
-  const vk::MemoryBarrier2 memory(Stage::eComputeShader, Access::eShaderWrite,
-                                  Stage::eComputeShader,
-                                  Access::eShaderRead | Access::eShaderWrite);
-  vk::DependencyInfo dependency;
-  dependency.setMemoryBarriers(memory);
-  commands.pipelineBarrier2(dependency);
+  memoryBarrier(commands, vk::PipelineStageFlagBits2::eComputeShader,
+                vk::PipelineStageFlagBits2::eComputeShader);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "measure/clock_probe.h"
 
+#include "gpu/barrier.h"
 #include "measure/clock_probe_types.h"
 #include "util/check.h"
 #include "util/error.h"
@@ -10,13 +11,8 @@ namespace {
 /// Parts the work from the stamp before it and the one behind: lavapipe (Mesa 22.3) takes
 /// timestamps no earlier than it must, and without this both after a dispatch between them.
 void waitForAll(const Commands& commands) {
-  using Stage = vk::PipelineStageFlagBits2;
-  using Access = vk::AccessFlagBits2;
-  const vk::MemoryBarrier2 memory(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllCommands,
-                                  Access::eMemoryRead | Access::eMemoryWrite);
-  vk::DependencyInfo dependency;
-  dependency.setMemoryBarriers(memory);
-  commands.pipelineBarrier2(dependency);
+  memoryBarrier(commands, vk::PipelineStageFlagBits2::eAllCommands,
+                vk::PipelineStageFlagBits2::eAllCommands);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "gpu/pipeline.h"
 #include "gpu/zero_fill.h"
 #include "raster/raster_types.h"
-#include "render/counters_buffer.h"
+#include "gpu/counters_buffer.h"
 #include "render/frame.h"
 
 namespace oitlab::raster {

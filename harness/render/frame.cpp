@@ -1,5 +1,7 @@
 #include "render/frame.h"
 
+#include "gpu/barrier.h"
+
 #include "util/check.h"
 
 namespace oitlab {
@@ -72,12 +74,7 @@ FrameTimer::Reading FrameTimer::read() {
 }
 
 void Frame::barrier(vk::PipelineStageFlags2 from, vk::PipelineStageFlags2 to) const {
-  using Access = vk::AccessFlagBits2;
-  const vk::MemoryBarrier2 memory(from, Access::eMemoryWrite, to,
-                                  Access::eMemoryRead | Access::eMemoryWrite);
-  vk::DependencyInfo dependency;
-  dependency.setMemoryBarriers(memory);
-  commands.pipelineBarrier2(dependency);
+  memoryBarrier(commands, from, to);
 }
 
 vk::RenderingAttachmentInfo Frame::targetAttachment() const {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gpu/buffer.h"
-#include "render/counters_buffer.h"
+#include "gpu/counters_buffer.h"
 
 namespace oitlab::lucid {
 

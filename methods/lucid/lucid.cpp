@@ -86,7 +86,7 @@ class Lucid : public Method {
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, push);
     });
-    recordReadback(frame, {&frontEnd_->counters(), &buffers_->counters});
+    recordReadback(frame.commands, {&frontEnd_->counters(), &buffers_->counters});
   }
 
   Status status() override {

@@ -66,7 +66,7 @@ void main() {
 #if HAS_IRREGULAR
       setUpIrregular(quad);
 #else
-      push.counters.c.irregularSeen = 1u;
+      atomicMax(push.counters.c.irregularSeen, 1u);
 #endif
     } else {
       const ivec4 box0 = boxOf(v[0], v[1], v[2], size), box1 = boxOf(v[0], v[2], v[3], size);

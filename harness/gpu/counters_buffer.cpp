@@ -1,4 +1,6 @@
-#include "render/counters_buffer.h"
+#include "gpu/counters_buffer.h"
+
+#include "gpu/barrier.h"
 
 namespace oitlab {
 
@@ -8,17 +10,17 @@ CountersBuffer::CountersBuffer(const Device& device, MemoryLedger& ledger, const
   if (!mapped) readback_ = Buffer(device, ledger, name + " readback", bytes, BufferKind::readback);
 }
 
-void recordReadback(const Frame& frame, std::initializer_list<const CountersBuffer*> counters) {
+void recordReadback(const Commands& commands,
+                    std::initializer_list<const CountersBuffer*> counters) {
   using Stage = vk::PipelineStageFlagBits2;
   bool copied = false;
   for (const CountersBuffer* c : counters) {
     if (!c->readback_) continue;
-    if (!copied) frame.barrier(Stage::eComputeShader, Stage::eTransfer);
+    if (!copied) memoryBarrier(commands, Stage::eComputeShader, Stage::eTransfer);
     copied = true;
-    frame.commands.copyBuffer(c->vk(), c->readback_.vk(),
-                              vk::BufferCopy(0, 0, c->counters_.bytes()));
+    commands.copyBuffer(c->vk(), c->readback_.vk(), vk::BufferCopy(0, 0, c->counters_.bytes()));
   }
-  frame.barrier(copied ? Stage::eTransfer : Stage::eComputeShader, Stage::eHost);
+  memoryBarrier(commands, copied ? Stage::eTransfer : Stage::eComputeShader, Stage::eHost);
 }
 
 }  // namespace oitlab

@@ -3,7 +3,6 @@
 #include <initializer_list>
 
 #include "gpu/buffer.h"
-#include "render/frame.h"
 
 namespace oitlab {
 
@@ -33,12 +32,13 @@ class CountersBuffer {
   }
 
  private:
-  friend void recordReadback(const Frame&, std::initializer_list<const CountersBuffer*>);
+  friend void recordReadback(const Commands&, std::initializer_list<const CountersBuffer*>);
 
   Buffer counters_, readback_;
 };
 
 /// At the end of a frame, after compute shaders: lets the CPU read the counters.
-void recordReadback(const Frame& frame, std::initializer_list<const CountersBuffer*> counters);
+void recordReadback(const Commands& commands,
+                    std::initializer_list<const CountersBuffer*> counters);
 
 }  // namespace oitlab
