@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/gpu_scene.h"
+#include "frame/gpu_scene.h"
 
 namespace oitlab {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "frame/frame.h"
 #include "gpu/pipeline.h"
 #include "method/parameters.h"
-#include "render/frame.h"
 
 namespace oitlab {
 

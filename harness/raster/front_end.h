@@ -3,11 +3,11 @@
 #include <map>
 #include <string>
 
+#include "frame/frame.h"
+#include "gpu/counters_buffer.h"
 #include "gpu/pipeline.h"
 #include "gpu/zero_fill.h"
 #include "raster/raster_types.h"
-#include "gpu/counters_buffer.h"
-#include "render/frame.h"
 
 namespace oitlab::raster {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "frame/frame.h"
 #include "method/method.h"
-#include "render/frame.h"
 
 namespace oitlab {
 

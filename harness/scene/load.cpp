@@ -3,9 +3,9 @@
 #include <charconv>
 #include <filesystem>
 
-#include "scene/generators.h"
-#include "scene/gltf.h"
-#include "scene/obj.h"
+#include "scene/generate/generators.h"
+#include "scene/import/gltf.h"
+#include "scene/import/obj.h"
 #include "scene/scene.h"
 #include "scene/views.h"
 #include "util/error.h"

@@ -2,8 +2,8 @@
 
 #include "abuffer/abuffer_types.h"
 #include "abuffer/options.h"
+#include "frame/frame.h"
 #include "gpu/buffer.h"
-#include "render/frame.h"
 
 namespace oitlab::abuffer {
 

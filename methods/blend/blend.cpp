@@ -2,9 +2,9 @@
 // happen to arrive back to front.
 #include "blend/sort_types.h"
 
+#include "frame/sample_counter.h"
 #include "gpu/radix_sort.h"
 #include "method/method.h"
-#include "render/sample_counter.h"
 
 namespace oitlab::blend {
 

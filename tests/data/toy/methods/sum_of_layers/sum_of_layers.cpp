@@ -1,6 +1,6 @@
 // The smallest method there is: what methods/README.md describes, and no more. A test adds it.
+#include "frame/sample_counter.h"
 #include "method/method.h"
-#include "render/sample_counter.h"
 #include "sum_of_layers/sum_types.h"
 
 namespace oitlab::sum_of_layers {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "frame/frame.h"
+
+namespace oitlab {
+
+/// Counts the fragments of draws that pass the depth test and are not discarded, for methods that
+/// have no count of their own: a precise occlusion query around the draws of instrumented frames,
+/// since it may cost time. Without the feature there is no count.
+class SampleCounter {
+ public:
+  explicit SampleCounter(const Device& device) {
+    if (device.info().has("occlusionQueryPrecise"))
+      query_ = vk::raii::QueryPool(device.vk(), {{}, vk::QueryType::eOcclusion, 1});
+  }
+
+  /// Before the render pass that counts.
+  void reset(const Frame& frame) {
+    active_ = frame.instrumented && *query_;
+    if (active_) frame.commands.resetQueryPool(*query_, 0, 1);
+  }
+
+  /// Within the render pass, around its draws.
+  template <typename Draw>
+  void count(const Frame& frame, Draw&& draw) {
+    if (active_) frame.commands.beginQuery(*query_, 0, vk::QueryControlFlagBits::ePrecise);
+    draw();
+    if (active_) frame.commands.endQuery(*query_, 0);
+  }
+
+  /// {"fragments": N} of the last instrumented frame, once the device is done; empty before.
+  const std::map<std::string, std::uint64_t>& counters() {
+    if (active_) {
+      const auto [result, samples] = query_.getResult<std::uint64_t>(
+          0, 1, sizeof(std::uint64_t),
+          vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+      if (result == vk::Result::eSuccess) counters_["fragments"] = samples;
+    }
+    return counters_;
+  }
+
+ private:
+  bool active_ = false;
+  vk::raii::QueryPool query_ = nullptr;
+  std::map<std::string, std::uint64_t> counters_;
+};
+
+}  // namespace oitlab

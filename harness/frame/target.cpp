@@ -1,0 +1,163 @@
+#include "frame/target.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include "frame/gpu_scene.h"
+#include "util/check.h"
+#include "util/error.h"
+#include "util/suggest.h"
+
+namespace oitlab {
+namespace {
+
+struct FormatEntry {
+  TargetFormat format;
+  const char* name;
+  vk::Format vulkan;
+  std::uint32_t bytesPerPixel;
+};
+constexpr std::array formats = {
+    FormatEntry{TargetFormat::rgba16f, "rgba16f", vk::Format::eR16G16B16A16Sfloat, 8},
+    FormatEntry{TargetFormat::rgba8, "rgba8", vk::Format::eR8G8B8A8Unorm, 4},
+    FormatEntry{TargetFormat::rgba32f, "rgba32f", vk::Format::eR32G32B32A32Sfloat, 16},
+};
+const FormatEntry& entryOf(TargetFormat format) {
+  return formats[std::size_t(format)];
+}
+
+}  // namespace
+
+std::string formatName(TargetFormat format) {
+  return entryOf(format).name;
+}
+vk::Format vulkanFormat(TargetFormat format) {
+  return entryOf(format).vulkan;
+}
+
+TargetFormat parseFormat(const std::string& name) {
+  std::vector<std::string> names;
+  for (const FormatEntry& entry : formats) {
+    if (name == entry.name) return entry.format;
+    names.push_back(entry.name);
+  }
+  fail<InputError>("unknown target format '{}'{}; there are: {}", name, didYouMean(name, names),
+                   joinNames(names));
+}
+
+void checkTargetSize(const DeviceInfo& device, std::uint32_t width, std::uint32_t height) {
+  const std::uint32_t limit = device.maxImageSize;
+  if (width == 0 || height == 0 || width > limit || height > limit)
+    fail<InputError>("size {}x{}: each side must be from 1 to {} on {}", width, height, limit,
+                     device.name);
+}
+
+Target::Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format)
+    : format_(format) {
+  checkTargetSize(device.info(), width, height);
+  using Usage = vk::ImageUsageFlagBits;
+  color_ = GpuImage(device, memory_,
+                    {"target color", vulkanFormat(format), width, height, 1,
+                     Usage::eColorAttachment | Usage::eStorage | Usage::eTransferSrc |
+                         Usage::eTransferDst | Usage::eSampled});
+  depth_ =
+      GpuImage(device, memory_,
+               {"target depth", depthFormat, width, height, 1,
+                Usage::eDepthStencilAttachment | Usage::eSampled, vk::ImageAspectFlagBits::eDepth});
+}
+
+std::vector<std::byte> Target::readBytes(const Device& device) const {
+  MemoryLedger unlisted;
+  const std::uint64_t bytes = std::uint64_t(width()) * height() * entryOf(format_).bytesPerPixel;
+  const Buffer buffer(device, unlisted, "image readback", bytes, BufferKind::readback);
+  device.runOnce([&](const Commands& commands) {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    using Layout = vk::ImageLayout;
+    color_.transition(commands, Layout::eGeneral, Layout::eTransferSrcOptimal, Stage::eAllCommands,
+                      Access::eMemoryWrite, Stage::eCopy, Access::eTransferRead);
+    const vk::BufferImageCopy copy(
+        0, 0, 0, vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, 0, 0, 1),
+        vk::Offset3D(), vk::Extent3D(width(), height(), 1));
+    commands.copyImageToBuffer(color_.vk(), Layout::eTransferSrcOptimal, buffer.vk(), copy);
+    color_.transition(commands, Layout::eTransferSrcOptimal, Layout::eGeneral, Stage::eCopy, {},
+                      Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
+    const vk::MemoryBarrier2 toHost(Stage::eCopy, Access::eTransferWrite, Stage::eHost,
+                                    Access::eHostRead);
+    vk::DependencyInfo dependency;
+    dependency.setMemoryBarriers(toHost);
+    commands.pipelineBarrier2(dependency);
+  });
+  const auto mapped = buffer.mapped<std::byte>();
+  return {mapped.begin(), mapped.end()};
+}
+
+Image Target::toImage(std::span<const std::byte> bytes) const {
+  Image image;
+  image.width = int(width());
+  image.height = int(height());
+  image.rgba.resize(std::size_t(width()) * height() * 4);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+    switch (format_) {
+      case TargetFormat::rgba16f: {
+        std::uint16_t half;
+        std::memcpy(&half, bytes.data() + 2 * i, 2);
+        image.rgba[i] = glm::unpackHalf1x16(half);
+        break;
+      }
+      case TargetFormat::rgba8:
+        image.rgba[i] = float(std::to_integer<int>(bytes[i])) / 255.0f;
+        break;
+      case TargetFormat::rgba32f:
+        std::memcpy(&image.rgba[i], bytes.data() + 4 * i, 4);
+        break;
+    }
+  }
+  return image;
+}
+
+FrameBindings::FrameBindings(const Device& device, const GpuScene& scene, const Target& target,
+                             std::span<const GpuImage* const> methodImages) {
+  OITLAB_CHECK_OP(methodImages.size(), <=, std::size_t(Device::methodImageCount));
+  vk::SamplerCreateInfo sampler;
+  sampler.magFilter = sampler.minFilter = vk::Filter::eLinear;
+  sampler.mipmapMode = vk::SamplerMipmapMode::eLinear;
+  sampler.addressModeU = sampler.addressModeV = vk::SamplerAddressMode::eClampToEdge;
+  sampler.maxLod = VK_LOD_CLAMP_NONE;
+  atlasSampler_ = vk::raii::Sampler(device.vk(), sampler);
+  sampler.magFilter = sampler.minFilter = vk::Filter::eNearest;
+  sampler.mipmapMode = vk::SamplerMipmapMode::eNearest;
+  depthSampler_ = vk::raii::Sampler(device.vk(), sampler);
+
+  const std::array sizes = {vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler,
+                                                   3 + Device::methodImageCount),
+                            vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, 1)};
+  pool_ = vk::raii::DescriptorPool(
+      device.vk(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
+  const vk::DescriptorSetLayout layout = device.setLayout();
+  set_ = std::move(vk::raii::DescriptorSets(device.vk(), {*pool_, layout}).front());
+
+  const auto readOnly = vk::ImageLayout::eShaderReadOnlyOptimal;
+  const std::array infos = {
+      vk::DescriptorImageInfo(*atlasSampler_, scene.opaqueAtlas().view(), readOnly),
+      vk::DescriptorImageInfo(*atlasSampler_, scene.transparentAtlas().view(), readOnly),
+      vk::DescriptorImageInfo({}, target.color().view(), vk::ImageLayout::eGeneral),
+      vk::DescriptorImageInfo(*depthSampler_, target.depth().view(),
+                              vk::ImageLayout::eDepthStencilReadOnlyOptimal),
+  };
+  // Every element must be valid: the ones that the method does not use are an atlas.
+  std::array<vk::DescriptorImageInfo, Device::methodImageCount> own;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    own[i] = vk::DescriptorImageInfo(
+        *depthSampler_,
+        i < methodImages.size() ? methodImages[i]->view() : scene.opaqueAtlas().view(), readOnly);
+  std::array<vk::WriteDescriptorSet, 5> writes;
+  for (std::uint32_t i = 0; i < infos.size(); ++i)
+    writes[i] = vk::WriteDescriptorSet(
+        *set_, i, 0, 1,
+        i == 2 ? vk::DescriptorType::eStorageImage : vk::DescriptorType::eCombinedImageSampler,
+        &infos[i]);
+  writes[4] = vk::WriteDescriptorSet(*set_, 4, 0, vk::DescriptorType::eCombinedImageSampler, own);
+  device.vk().updateDescriptorSets(writes, nullptr);
+}
+
+}  // namespace oitlab
