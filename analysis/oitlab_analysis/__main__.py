@@ -28,10 +28,11 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
     report = add(
         "report",
-        help="table, plots and report of a results folder",
-        description="Reads every cell in RESULTS_DIR/cells and prints a table, then the paths of the\n"
-        "files that it wrote.",
-        epilog="written into RESULTS_DIR:\n"
+        help="table, plots and report of results folders and packs",
+        description="Reads every cell of the given results folders, packs (*.json.gz) and folders of\n"
+        "either, prints a table, then the paths of the files that it wrote.",
+        epilog="written into DIR, or into RESULTS where that is one results folder. Of packs and of\n"
+        "several folders nothing is written without --out.\n"
         "  report.html   one self-contained page: tables, charts, pictures to compare\n"
         "  report.md     the same, with relative links\n"
         "  cells.csv     one row per cell, every number of the report\n"
@@ -42,8 +43,10 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
         "  2  bad input, or nothing to report",
     )
     report.add_argument(
-        "results", metavar="RESULTS_DIR", type=Path, help="the folder that holds cells/ and images/"
+        "results", metavar="RESULTS", type=Path, nargs="+",
+        help="a folder that holds cells/ and images/, a pack, or a folder of these"
     )
+    report.add_argument("--out", metavar="DIR", type=Path, help="where to write the report")
     report.add_argument("--metric", choices=METRICS, default="rmse",
                         help="error of the quality-against-speed charts (default rmse)")
     report.add_argument("--all-charts", action="store_true",
@@ -58,6 +61,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     )
     diff.add_argument("a", metavar="RESULTS_A", type=Path, help="before: a results folder or a pack")
     diff.add_argument("b", metavar="RESULTS_B", type=Path, help="after")
+    diff.add_argument("--details", action="store_true", help="name the shaders that changed")
     diff.add_argument("--out", metavar="FILE.md", type=Path, help="write it as Markdown too")
 
     paper = add(
@@ -114,9 +118,8 @@ def run_histogram(source: Path, target: Path) -> int:
 def run_report(options: argparse.Namespace) -> tuple[str, int]:
     from .report import make_report
 
-    result = make_report(options.results, options.metric, options.all_charts)
-    paths = "\n".join(map(str, result.files))
-    return f"{result.text}\n{paths}", EXIT_CELLS_FAILED if result.failed else EXIT_DONE
+    result = make_report(options.results, options.out, options.metric, options.all_charts)
+    return "\n".join([result.text, *map(str, result.files)]), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 
 def run_diff(options: argparse.Namespace) -> tuple[str, int]:
@@ -125,12 +128,12 @@ def run_diff(options: argparse.Namespace) -> tuple[str, int]:
     result = diff(options.a, options.b)
     if options.out:
         options.out.write_text(markdown(result, (options.a, options.b)), encoding="utf-8")
-    return terminal(result), EXIT_DONE
+    return terminal(result, options.details), EXIT_DONE
 
 
 def run_paper(options: argparse.Namespace) -> tuple[str, int]:
-    from .cells import BadResults
     from .paper import make_paper
+    from .sources import BadResults
 
     if not options.results and not (PAPER / "data").is_dir():
         raise BadResults(f"{PAPER / 'data'} is not there: give results folders, for example: oitlab paper "
@@ -139,8 +142,8 @@ def run_paper(options: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_pack(options: argparse.Namespace) -> tuple[str, int]:
-    from .cells import BadResults
     from .packs import PACK_SUFFIX, write_pack
+    from .sources import BadResults
 
     if not (options.results / "cells").is_dir():
         raise BadResults(f"{options.results}: not a results folder (it has no folder cells)")
@@ -164,7 +167,7 @@ def main(arguments: list[str] | None = None) -> int:
     name = f"oitlab {options.command}"
     # Late, so that --help does not wait for matplotlib, and works without it.
     try:
-        from .cells import BadResults
+        from .sources import BadResults
     except ModuleNotFoundError as error:
         return missing_module(name, error)
     try:

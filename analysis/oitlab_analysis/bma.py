@@ -112,7 +112,7 @@ def bma_table2(table: pandas.DataFrame) -> pandas.DataFrame | None:
 @_drawn
 def bma_figure3(table: pandas.DataFrame) -> Figure | None:
     """Frame time against the local memory of a shader that hardly uses it."""
-    cells = _measured(table, "local_memory")
+    cells = _measured(table, "local_memory", "size", "passes")
     if cells.empty:
         return None
     figure, axes = _figure(cells)
@@ -245,14 +245,17 @@ def bma_figure9(table: pandas.DataFrame) -> Figure | None:
     return figure
 
 
-def _measured(table: pandas.DataFrame, method: str) -> pandas.DataFrame:
-    if table.empty or "method" not in table:
+def _measured(table: pandas.DataFrame, method: str, *parameters: str) -> pandas.DataFrame:
+    """The measured cells of a method that have all of these parameters; without columns if none."""
+    columns = [f"param.{name}" for name in parameters]
+    if not {"method", *columns} <= set(table.columns):
         return pandas.DataFrame()
-    return table[(table["method"] == method) & (table["status"] == "ok")]
+    table = table[(table["method"] == method) & (table["status"] == "ok")].dropna(subset=columns)
+    return table if len(table) else pandas.DataFrame()
 
 
 def _abuffer(table: pandas.DataFrame, **choices: str) -> pandas.DataFrame:
-    cells = _measured(table, "abuffer")
+    cells = _measured(table, "abuffer", "sort_memory", "max_fragments", *choices)
     for name, value in choices.items():
         if cells.empty:
             break

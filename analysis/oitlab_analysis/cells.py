@@ -1,4 +1,4 @@
-"""Collects the cells of a results folder, or of a packed file, into one tidy table, a row a cell.
+"""Collects the cells of results folders and packs into one tidy table, one row per cell.
 
 A results folder may be shared by running processes and may hold files of other origin, so whatever
 is not a whole cell of a known schema is named and counted, and never stops the report.
@@ -7,28 +7,26 @@ Units: times in milliseconds, memory in bytes, `pixels_off` a share of 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy
 import pandas
 
 from .checks import FRAME_STATISTICS, NotACell, cell_of, check_samples
 from .clock import clock_line, stages_are_slow
 from .formats import one_line
 from .memory import own_memory
-from .packs import PACK_SUFFIX, read_bytes, read_pack
-
-HINT = "run an experiment first, for example: oitlab run experiments/quickstart.toml"
-
-
-class BadResults(Exception):
-    """The results folder can't be reported on; the message is one line for the user."""
+from .packs import read_bytes
+from .sources import HINT, BadResults, documents, sources_in
+from .statistics import FEWEST_BLOCKS
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A file in cells/ that was left out of the report."""
+    """A file that was left out of the report."""
 
     file: str
     reason: str
@@ -36,70 +34,81 @@ class Problem:
 
 @dataclass(frozen=True)
 class Collection:
-    """What a results folder holds: the table, the JSON behind each row, the files left out.
+    """What the sources hold: the table, the JSON behind each row by its key, the files left out.
 
-    Of the samples of a cell only those of the whole frame are kept, as arrays.
+    Of the samples of a cell only those of the whole frame are kept, as arrays. `sources` says from
+    which folder or pack each cell is. `repeated` counts cells that several sources hold alike.
     """
 
-    folder: Path
     table: pandas.DataFrame
     cells: dict[str, dict]
+    sources: dict[str, Path]
     problems: list[Problem]
+    repeated: int = 0
 
 
-def collect(folder: Path) -> Collection:
-    """Reads every cell of a results folder, of a folder of packs, or of one pack.
+def collect(*paths: Path) -> Collection:
+    """Reads every cell of results folders, packs, and folders of either.
 
-    Raises BadResults if there is none.
+    A cell is known by its experiment and id: experiments that share a setting share ids. What
+    several sources hold alike counts once; other versions of a cell are cells of their own.
+    Raises BadResults if there is no cell.
     """
-    if not folder.exists():
-        raise BadResults(f"{folder}: no such folder; {HINT}")
     cells: dict[str, dict] = {}
+    sources: dict[str, Path] = {}
     problems: list[Problem] = []
-    for name, content in _documents(folder):
-        try:
-            if isinstance(content, NotACell):
-                raise content
-            cell = check_samples(cell_of(content))
-            if cell["id"] in cells:
-                raise NotACell(f"its id {cell['id']} is that of another file")
-            cells[cell["id"]] = cell
-        except NotACell as error:
-            problems.append(Problem(name, one_line(str(error))))
+    seen: set[str] = set()
+    repeated = 0
+    found = sources_in(list(paths))
+    for source in found:
+        own: set[tuple[str, str]] = set()
+        for name, content in documents(source):
+            try:
+                if isinstance(content, NotACell):
+                    raise content
+                cell = check_samples(cell_of(content))
+                identity = cell["experiment"], cell["id"]
+                if identity in own:
+                    raise NotACell(f"its id {cell['id']} is that of another file of this experiment")
+            except NotACell as error:
+                problems.append(Problem(name, one_line(str(error))))
+                continue
+            own.add(identity)
+            if (text := fingerprint(cell)) in seen:
+                repeated += 1
+                continue
+            seen.add(text)
+            key = free_key("/".join(identity), cells)
+            cells[key], sources[key] = cell, source
     if not cells:
-        found = "is empty"
-        if problems:
-            first = problems[0]
-            found = f"has no whole cell in {len(problems)} file(s); {first.file}: {first.reason}"
-        where = folder / "cells" if (folder / "cells").is_dir() else folder
-        raise BadResults(f"{where} {found}; {HINT}")
-    return Collection(folder, as_table(cells), cells, problems)
+        raise BadResults(f"{_nothing_in(found, problems)}; {HINT}")
+    return Collection(as_table(cells), cells, sources, problems, repeated)
 
 
-def _documents(folder: Path) -> Iterator[tuple[str, bytes | dict | NotACell]]:
-    """The name and content of all that may be a cell; NotACell where there is no reading it."""
-    packs, files = [], []
-    if folder.is_file():
-        packs = [folder]
-    elif (folder / "cells").is_dir():
-        files = sorted((folder / "cells").iterdir())
-    else:
-        packs = sorted(folder.glob("*" + PACK_SUFFIX))
-        if not packs:
-            raise BadResults(
-                f"{folder}: not a results folder (it has no folder cells, and no *{PACK_SUFFIX}); "
-                f"{HINT}")
-    for path in files:
-        try:
-            yield path.name, read_bytes(path)
-        except NotACell as error:
-            yield path.name, error
-    for path in packs:
-        try:
-            for index, content in enumerate(read_pack(path)):
-                yield f"{path.name}, cell {index + 1}", content
-        except NotACell as error:
-            yield path.name, error
+def fingerprint(cell: dict) -> str:
+    """Equal for two copies of one measurement, and for nothing else."""
+    times = cell.get("samples", {}).get("frame_ms")
+    return json.dumps([cell["experiment"], cell["id"], cell["group"], cell["provenance"].get("date"),
+                       cell["provenance"]["commit"], cell["status"],
+                       None if times is None else list(times[:8])])
+
+
+def free_key(name: str, taken: dict) -> str:
+    """The name, numbered where it is taken."""
+    key, number = name, 1
+    while key in taken:
+        number += 1
+        key = f"{name} ({number})"
+    return key
+
+
+def _nothing_in(sources: list[Path], problems: list[Problem]) -> str:
+    where = ", ".join(str(source / "cells" if source.is_dir() else source) for source in sources[:3])
+    where += ", ..." if len(sources) > 3 else ""
+    if not problems:
+        return f"{where} is empty"
+    first = problems[0]
+    return f"{where} has no whole cell in {len(problems)} file(s); {first.file}: {first.reason}"
 
 
 def read_cell(path: Path) -> dict:
@@ -112,7 +121,7 @@ def as_table(cells: dict[str, dict]) -> pandas.DataFrame:
 
     Stages keep the order in which the cells list them, which is that in which they run.
     """
-    rows = pandas.DataFrame([flatten(cell) for cell in cells.values()])
+    rows = pandas.DataFrame([{"key": key} | flatten(cell) for key, cell in cells.items()])
     fixed = [name for name in rows.columns if "." not in name or name.startswith("frame_ms.")]
     families = ("param.", "quality.", "counter.", "memory.", "stop.")
     open_ended = [
@@ -121,12 +130,18 @@ def as_table(cells: dict[str, dict]) -> pandas.DataFrame:
     return rows[fixed + open_ended]
 
 
+def block_count(cell: dict) -> int:
+    """How many blocks of frames the times of a cell are from; 0 where it has none."""
+    return len(numpy.unique(cell["samples"]["block"])) if cell["status"] == "ok" else 0
+
+
 def flatten(cell: dict) -> dict[str, object]:
     """The columns of one cell. What a failed or skipped cell does not have stays empty, and so do
-    stages that were timed at a lower clock than the frames."""
+    stages that were timed at a lower clock than the frames, and intervals of too few blocks."""
     scene, device, provenance = cell["scene"], cell["device"], cell["provenance"]
     frame = cell.get("statistics", {}).get("frame", {})
-    interval = frame.get("ci95", [None, None])
+    blocks = block_count(cell)
+    interval = (frame.get("ci95") if blocks >= FEWEST_BLOCKS else None) or (math.nan, math.nan)
     row: dict[str, object] = {key: cell[key] for key in ("id", "experiment", "status", "reason")}
     row |= {
         "scene": scene["name"],
@@ -156,6 +171,7 @@ def flatten(cell: dict) -> dict[str, object]:
         "frame_ms.ci_low": interval[0],
         "frame_ms.ci_high": interval[1],
         "frame_ms.count": frame.get("count"),
+        "blocks": blocks or None,
         "memory_total_bytes": cell.get("memory_bytes", {}).get("total"),
         **own_memory(cell),
         "image": (cell.get("image") or {}).get("file"),

@@ -173,7 +173,7 @@ def check_cell(cell: dict) -> None:
     for key in FRAME_STATISTICS:
         _get(cell, f"/statistics/frame/{key}", "a time in ms above 0", _is_time)
     _get(cell, "/statistics/frame/count", "a whole number", lambda v: type(v) is int)
-    _get(cell, "/statistics/frame/ci95", "[low, high]", _is_interval)
+    _get_if_there(cell, "/statistics/frame/ci95", "[low, high] or null", _is_interval)
     times = _get(cell, "/samples/frame_ms", "a list of times in ms above 0", _is_times)
     _get(cell, "/samples/block", f"a list of {len(times)} block numbers",
          lambda v: _is_block_numbers(v, len(times)))

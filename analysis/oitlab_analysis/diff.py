@@ -17,10 +17,11 @@ from pathlib import Path
 import numpy
 
 from . import formats
-from .cells import BadResults, Collection, collect
+from .cells import Collection, block_count, collect
 from .device_notes import note_of
 from .labels import parameter_text
 from .report import left_out
+from .sources import BadResults
 from .statistics import (FEWEST_BLOCKS, SEED, block_medians, interval_of, resampled_medians, verdict)
 from .table import NOTED, TERMINAL_WIDTH, markdown_text, terminal_warnings
 
@@ -31,6 +32,38 @@ SEEDS = (SEED + 1, SEED + 2)
 
 
 @dataclass(frozen=True)
+class Shaders:
+    """What changed in the shaders of a method.
+
+    Only those that both cells name are compared. A cell made before each pipeline recorded its own
+    shaders also names definitions of other methods of its process, which say nothing of this one.
+    """
+
+    changed: list[str]
+    common: int
+    alone: tuple[list[str], list[str]]  # only in A, only in B
+
+    @classmethod
+    def of(cls, before: dict, after: dict) -> Shaders:
+        a, b = (cell["provenance"].get("shaders") or {} for cell in (before, after))
+        common = sorted(a.keys() & b.keys())
+        return cls([name for name in common if a[name] != b[name]], len(common),
+                   (sorted(a.keys() - b.keys()), sorted(b.keys() - a.keys())))
+
+    def line(self) -> str:
+        """One line, empty where nothing is known to have changed."""
+        if not self.changed and (self.common or not any(self.alone)):
+            return ""
+        if not self.common:
+            return "shaders: none in common"
+        return f"shaders: {len(self.changed)} of {self.common} changed"
+
+    def details(self) -> list[str]:
+        lines = [f"changed: {name}" for name in self.changed]
+        return lines + [f"only in {side}: {name}" for side, names in zip("AB", self.alone) for name in names]
+
+
+@dataclass(frozen=True)
 class Change:
     """A cell of B against the same cell of A; `against_blend` is None where there is no such pair."""
 
@@ -38,8 +71,9 @@ class Change:
     label: str
     ratio: float
     interval: tuple[float, float] | None
+    blocks: int  # of A or of B, whichever has fewer
     against_blend: tuple[float, tuple[float, float] | None] | None
-    shaders: list[str]  # that differ
+    shaders: Shaders
     image_changed: bool
     error: tuple[float | None, float | None]  # RMSE before and after
 
@@ -150,11 +184,9 @@ def compare_pair(before: dict, after: dict, cells: tuple[dict, dict], label: str
         ratios = [_over_blend(c, blend) for c, blend in zip((before, after), blends)]
         if all(ratios):
             relative = _ratio(*ratios)
-    hashes = [c["provenance"].get("shaders") or {} for c in (before, after)]
-    shaders = sorted(s for s in hashes[0].keys() | hashes[1].keys() if hashes[0].get(s) != hashes[1].get(s))
     errors = tuple((c.get("quality") or {}).get("rmse") for c in (before, after))
-    return Change(after, label, ratio, interval, relative, shaders,
-                  before.get("image_hash") != after.get("image_hash"), errors)
+    return Change(after, label, ratio, interval, min(map(block_count, (before, after))), relative,
+                  Shaders.of(before, after), before.get("image_hash") != after.get("image_hash"), errors)
 
 
 def diff(folder_a: Path, folder_b: Path) -> Diff:
@@ -189,7 +221,7 @@ def diff(folder_a: Path, folder_b: Path) -> Diff:
 def _measurement_warnings(changes: list[Change], a: dict, b: dict) -> list[str]:
     warnings = []
     for change in changes:
-        if (change.cell["method"] == "blend" and not change.shaders
+        if (change.cell["method"] == "blend" and not change.shaders.changed
                 and change.verdict in ("faster", "slower")):
             warnings.append(
                 f"{change.label} is {change.verdict} ({formats.number(change.ratio)}) although "
@@ -218,23 +250,23 @@ def _row(change: Change) -> list[str]:
     relative = formats.NOTHING
     if change.against_blend:
         ratio, interval = change.against_blend
-        relative = formats.with_interval(ratio, *(interval or (None, None)))
+        relative = formats.with_interval(ratio, *(interval or (None, None)), change.blocks)
         relative += NOTED if note_of(change.cell["device"]["name"], "blend") else ""
     notes = []
     if change.image_changed:
         before, after = (formats.number(error) for error in change.error)
         notes.append("image differs" + (f", RMSE {before} to {after}" if before != after else ""))
-    if change.shaders:
-        notes.append("shaders: " + ", ".join(change.shaders))
-    return [change.label, formats.with_interval(change.ratio, *(change.interval or (None, None))),
-            change.verdict, relative, change.blend_verdict, "; ".join(notes)]
+    if line := change.shaders.line():
+        notes.append(line)
+    return [change.label,
+            formats.with_interval(change.ratio, *(change.interval or (None, None)), change.blocks), change.verdict, relative, change.blend_verdict, "; ".join(notes)]
 
 
 HEAD = ["cell", "B / A [95%]", "verdict", "against blend [95%]", "verdict", "what changed"]
 
 
-def terminal(result: Diff) -> str:
-    """Blocks of at most 100 characters a line: what changed first."""
+def terminal(result: Diff, details: bool = False) -> str:
+    """Blocks of at most 100 characters a line: what changed first. `details` names the shaders."""
     lines = []
     for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
         lines += [device, f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}"]
@@ -247,6 +279,9 @@ def terminal(result: Diff) -> str:
             if notes:
                 lines += textwrap.wrap(notes, TERMINAL_WIDTH, initial_indent="    ",
                                        subsequent_indent="    ")
+            for text in change.shaders.details() if details else ():
+                lines += textwrap.wrap(text, TERMINAL_WIDTH, initial_indent="      ",
+                                       subsequent_indent="        ", break_on_hyphens=False)
         lines.append("")
     return "\n".join(lines) + terminal_warnings(result.warnings) + summary(result.changes) + "\n"
 

@@ -35,12 +35,16 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{value:.{decimals_for(value, digits)}f}"
 
 
-def with_interval(value: float | None, low: float | None, high: float | None) -> str:
-    """`12.3 [12.2, 12.4]`; a fourth digit where three would print both ends alike."""
+def with_interval(value: float | None, low: float | None, high: float | None,
+                  count: float | None = None) -> str:
+    """`12.3 [12.2, 12.4]`; a fourth digit where three would print both ends alike.
+
+    `12.3 (n = 2)` where there is no interval, because it is of `count` blocks.
+    """
     if not is_number(value):
         return NOTHING
     if not (is_number(low) and is_number(high)):
-        return number(value)
+        return number(value) + (f" (n = {count:g})" if is_number(count) else "")
     for digits in (3, 4):
         decimals = decimals_for(value, digits)
         ends = f"{low:.{decimals}f}", f"{high:.{decimals}f}"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import io
+import os
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,9 +34,9 @@ def data_uri(content: bytes, kind: str) -> str:
     return f"data:image/{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
-def relative_link(file: str) -> str:
-    """A link to a file of the results folder, from a report in that folder."""
-    return quote(file)
+def relative_link(folder: Path, results: Path, file: str) -> str:
+    """A link to a file of a results folder from a report in `folder`."""
+    return quote(os.path.relpath(results / file, folder))
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ def look_at(results: Path, file: str | None) -> Source:
     """Reads RESULTS/`file` and its size."""
     if not file:
         return Source(problem="no image was written")
+    if results.is_file():
+        return Source(problem="a pack holds no images")
     path = results / file
     # A cell may come from elsewhere: it must not pull other files of this machine into a report.
     if not path.resolve().is_relative_to(results.resolve()):
@@ -87,19 +90,20 @@ class Pictures:
     scale is how many pixels of the image one of the copy stands for (1: the image itself).
     """
 
-    def __init__(self, folder: Path, sections: list[Section]):
+    def __init__(self, folder: Path, sources: dict[str, Path], sections: list[Section]):
+        self._folder, self._results = folder, sources
         self.embedded: dict[str, dict] = {}
-        self._sources: dict[str, dict] = {}
-        self._keys: dict[str, str] = {}
+        self._problems: dict[str, str] = {}  # by key of the cell, as are the next
+        self._pictures: dict[str, str] = {}
         self._decoded = self._bytes = 0
         wanted = self._in_order(sections)
         distinct = len(set(wanted.values()))
         share = MOST_BYTES / max(1, distinct)
-        for file, key in wanted.items():
-            self._add(folder, file, key, share)
+        for (cell, file), picture in wanted.items():
+            self._add(cell, file, picture, share)
 
-    def _in_order(self, sections: list[Section]) -> dict[str, str]:
-        """File -> key of its picture: first one cell of each setting, then another, and so on."""
+    def _in_order(self, sections: list[Section]) -> dict[tuple[str, str], str]:
+        """Key of a cell and its file -> key of its picture: first one cell of each setting, then another, and so on."""
         queue = []
         for section in sections:
             for _, cells in section.settings():
@@ -109,12 +113,13 @@ class Pictures:
                 queue += [(place, row) for place, row in enumerate(rows)]
         queue.sort(key=lambda entry: entry[0])
         # Equal images of one setting have equal hashes; the scene keeps apart what hashes cannot.
-        return {row["image"]: f"{row['image_hash'] or row['image']}-{row['scene']}" for _, row in queue}
+        return {(row["key"], row["image"]): f"{row['image_hash'] or row['key']}-{row['scene']}"
+                for _, row in queue}
 
-    def _add(self, folder: Path, file: str, key: str, share: float) -> None:
-        self._keys[file] = key
-        source = look_at(folder, file)
-        self._sources[file] = {"problem": source.problem}
+    def _add(self, cell: str, file: str, key: str, share: float) -> None:
+        self._pictures[cell] = key
+        source = look_at(self._results[cell], file)
+        self._problems[cell] = source.problem
         if source.problem or key in self.embedded:
             return
         content, kind, scale = source.content, "png", 1.0
@@ -125,7 +130,7 @@ class Pictures:
             try:
                 content, width = self._fitting(source, share)
             except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-                self._sources[file] = {"problem": f"{file} cannot be read: {error}"}
+                self._problems[cell] = f"{file} cannot be read: {error}"
                 return
             kind, scale = "jpeg", source.width / width
         if self._bytes + len(content) > MOST_BYTES:
@@ -151,17 +156,17 @@ class Pictures:
         file = row["image"] if isinstance(row["image"], str) else None
         if file is None:
             return {"picture": "", "link": "", "problem": "no image was written"}
-        problem = self._sources[file]["problem"]
-        key = self._keys[file]
-        return {"picture": key if key in self.embedded and not problem else "",
-                "link": "" if problem else relative_link(file), "problem": problem}
+        problem, key = self._problems[row["key"]], self._pictures[row["key"]]
+        link = "" if problem else relative_link(self._folder, self._results[row["key"]], file)
+        return {"picture": key if key in self.embedded and not problem else "", "link": link,
+                "problem": problem}
 
     def note(self) -> str:
         """What a reader must know of the copies; empty where the page holds the images themselves."""
         whole = sum(picture["scale"] == 1 for picture in self.embedded.values())
         small = len(self.embedded) - whole
-        linked = sum(1 for file, key in self._keys.items()
-                     if key not in self.embedded and not self._sources[file]["problem"])
+        linked = sum(1 for cell, key in self._pictures.items()
+                     if key not in self.embedded and not self._problems[cell])
         parts = []
         if small:
             parts.append(f"{small} of {len(self.embedded)} pictures are smaller copies, whose values are "

@@ -30,15 +30,16 @@ FIGURES = (
 
 
 def html_page(
-    folder: Path, title: str, summary: str, clock: str, warnings: list[str], contents: list[dict]
+    folder: Path, sources: dict[str, Path], title: str, summary: str, clock: str, warnings: list[str],
+    contents: list[dict],
 ) -> str:
-    """The page. `contents` has for each section: `section`, `charts`, `parameters`, `unmeasured`
+    """The page that is to lie in `folder`; `sources` says where the cells, by key, are from. `contents` has for each section: `section`, `charts`, `parameters`, `unmeasured`
     and `commands`, as `report` makes them."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )
-    pictures = images.Pictures(folder, [content["section"] for content in contents])
+    pictures = images.Pictures(folder, sources, [content["section"] for content in contents])
     return environment.get_template("report.html.jinja").render(
         title=title,
         summary=summary,

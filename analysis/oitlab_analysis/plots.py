@@ -66,14 +66,15 @@ BMA_CAPTIONS = {
 }
 
 
-def _has_lists(section: Section) -> int:
-    return int(section.table["method"].isin(("abuffer", "local_memory")).any())
+def _is_of_bma(section: Section) -> int:
+    """Figures of a paper mean something for the experiment that repeats it, and for no other."""
+    return int(section.context["Experiment"] == "bma")
 
 
 def _bma_figure(number: int) -> Kind:
     """The counterpart of a figure of Knowles et al. 2013."""
     draw = getattr(bma, f"bma_figure{number}")
-    return Kind(BMA_CAPTIONS[number] + f" After figure {number} of Knowles et al. 2013.", _has_lists,
+    return Kind(BMA_CAPTIONS[number] + f" After figure {number} of Knowles et al. 2013.", _is_of_bma,
                 lambda section, page, metric: draw(section.table))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import subprocess
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import pandas
 
 from . import formats, images, plots
-from .cells import BadResults, Collection, Problem, collect
+from .cells import Collection, Problem, collect
 from .clock import clock_summary
 from .labels import parameter_text, parameters_of, records
 from .page import html_page
@@ -29,43 +30,75 @@ class Result:
     failed: bool
 
 
-def make_report(folder: Path, metric: str = "rmse", all_charts: bool = False) -> Result:
-    """Reads RESULTS/cells and writes the report into RESULTS. Raises BadResults, OSError."""
-    if folder.is_file():
-        raise BadResults(f"{folder}: a file (a pack holds no pictures); wanted the folder that "
-                         "`oitlab run` wrote")
-    collection = collect(folder)
+def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse",
+                all_charts: bool = False) -> Result:
+    """Reads all cells of the paths (see collect()) and writes the report into `out`.
+
+    Without `out` it is written into the results folder, where the paths name exactly one, and
+    nowhere otherwise: packs and folders of packs are somebody's data. Raises BadResults, OSError.
+    """
+    collection = collect(*paths)
     table = add_comparisons(collection.table, collection.cells)
     sections = make_sections(collection, table)
     notes = mixture_warnings(table) + left_out(collection.problems)
+    if collection.repeated:
+        notes.append(f"{collection.repeated} cells were given twice, and count once.")
+    clock = clock_summary(list(collection.cells.values()))
+    folder = out or own_folder(paths)
+    if folder is None:
+        text = terminal_text(sections, notes, table, clock)
+        return Result(f"{text}Nothing was written: --out DIR says where the page, the charts and the CSV go.",
+                      [], bool((table["status"] == "failed").any()))
+    folder.mkdir(parents=True, exist_ok=True)
     charts, missing = plots.save_charts(sections, folder / "plots", metric, all_charts)
+    command = command_of(paths, out)
     if missing:
         notes.append(f"{missing} charts were left out to keep the page short: "
-                     f"oitlab report {shlex.quote(str(folder))} --all-charts draws them.")
-    clock = clock_summary(list(collection.cells.values()))
+                     f"{command} --all-charts draws them.")
 
     csv, markdown, html = folder / "cells.csv", folder / "report.md", folder / "report.html"
     table.to_csv(csv, index=False)
-    markdown.write_text(markdown_report(collection, sections, charts, notes), encoding="utf-8")
+    markdown.write_text(markdown_report(folder, collection, sections, charts, notes, command), encoding="utf-8")
     contents = [
         {
             "section": section,
             "charts": section_charts,
             "parameters": all_parameters(section),
             "unmeasured": unmeasured(section),
-            "commands": commands(collection, section),
+            "commands": commands(command, section),
         }
         for section, section_charts in zip(sections, charts)
     ]
-    html.write_text(html_page(folder, title(sections), summary(table), clock, notes, contents),
-                    encoding="utf-8")
+    html.write_text(html_page(folder, collection.sources, title(sections), summary(table), clock, notes,
+                              contents), encoding="utf-8")
+    return Result(terminal_text(sections, notes, table, clock), [html, markdown, csv],
+                  bool((table["status"] == "failed").any()))
 
+
+def own_folder(paths: list[Path]) -> Path | None:
+    """The results folder that the paths name, if they name one and nothing else, and git does not
+    track its cells."""
+    if len(paths) != 1 or not (paths[0] / "cells").is_dir():
+        return None
+    try:
+        tracked = subprocess.run(["git", "ls-files", "cells"], cwd=paths[0], capture_output=True, check=False)
+    except OSError:  # no git: nothing is tracked by it
+        return paths[0]
+    return None if tracked.stdout else paths[0]
+
+
+def command_of(paths: list[Path], out: Path | None) -> str:
+    """The command that makes this report."""
+    words = ["oitlab", "report", *map(str, paths), *(["--out", str(out)] if out else [])]
+    return shlex.join(words)
+
+
+def terminal_text(sections: list[Section], notes: list[str], table: pandas.DataFrame, clock: str) -> str:
     blocks = [terminal_table(section) for section in sections]
     blocks.append(terminal_warnings(notes) + f"{summary(table)}.")
     if clock:
         blocks[-1] += "\n" + textwrap.fill(clock, TERMINAL_WIDTH)
-    text = "\n\n".join(blocks) + "\n"
-    return Result(text, [html, markdown, csv], bool((table["status"] == "failed").any()))
+    return "\n\n".join(blocks) + "\n"
 
 
 def left_out(problems: list[Problem]) -> list[str]:
@@ -75,7 +108,7 @@ def left_out(problems: list[Problem]) -> list[str]:
     named = [f"{formats.one_line(p.file)}: {p.reason}" for p in problems[:MOST_NAMED]]
     if len(problems) > MOST_NAMED:
         named.append(f"and {len(problems) - MOST_NAMED} more")
-    files = "file in cells/ was" if len(problems) == 1 else "files in cells/ were"
+    files = "file was" if len(problems) == 1 else "files were"
     return [f"{len(problems)} {files} left out: {'; '.join(named)}."]
 
 
@@ -116,18 +149,19 @@ def unmeasured(section: Section) -> list[dict[str, str]]:
     ]
 
 
-def commands(collection: Collection, section: Section) -> list[str]:
+def commands(command: str, section: Section) -> list[str]:
     """The commands that were run, and the one that makes this report."""
     shown = section.commands[:MOST_NAMED]
     if len(section.commands) > MOST_NAMED:
         shown.append(f"# and {len(section.commands) - MOST_NAMED} more: column command of cells.csv")
-    return [*shown, f"oitlab report {shlex.quote(str(collection.folder))}"]
+    return [*shown, command]
 
 
 def markdown_report(
-    collection: Collection, sections: list[Section], charts: list, warnings: list[str]
+    folder: Path, collection: Collection, sections: list[Section], charts: list, warnings: list[str],
+    command: str,
 ) -> str:
-    """The report as Markdown; pictures are relative links."""
+    """The report as Markdown; pictures are links relative to `folder`."""
     lines = [f"# {markdown_text(title(sections))}", "", f"{summary(collection.table)}.", ""]
     if clock := clock_summary(list(collection.cells.values())):
         lines += [markdown_text(clock), ""]
@@ -141,9 +175,9 @@ def markdown_report(
         lines += [""]
         for chart in section_charts:
             lines += [f"![{markdown_text(chart.caption)}](plots/{chart.name}.png)", ""]
-        lines += _markdown_images(section) + _markdown_unmeasured(section)
+        lines += _markdown_images(folder, collection, section) + _markdown_unmeasured(section)
         lines += ["### How to reproduce", "", f"At commit {markdown_text(section.context['Commit'])}:", ""]
-        lines += [f"    {command}" for command in commands(collection, section)] + [""]
+        lines += [f"    {command}" for command in commands(command, section)] + [""]
     return "\n".join(lines)
 
 
@@ -153,16 +187,17 @@ def _markdown_clock(section: Section) -> list[str]:
     return ["Cells with a note on the clock:", "", *lines, ""] if lines else []
 
 
-def _markdown_images(section: Section) -> list[str]:
+def _markdown_images(folder: Path, collection: Collection, section: Section) -> list[str]:
     lines = []
     for _, cells in section.settings():
-        pictured = cells[cells["image"].notna()]
+        in_folder = [collection.sources[key].is_dir() for key in cells["key"]]
+        pictured = cells[cells["image"].notna() & in_folder]
         if pictured.empty:
             continue
         lines += [f"### {markdown_text(setting_heading(cells))}", ""]
         for row in records(pictured):
             caption = markdown_text(f"{row['label']}: {error_caption(row)}")
-            link = images.relative_link(row["image"])
+            link = images.relative_link(folder, collection.sources[row["key"]], row["image"])
             lines += [f"![{caption}]({link})", "", caption, ""]
     return lines
 

@@ -96,7 +96,7 @@ def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
 def _draw_panel(axes: Axes, cells: pandas.DataFrame, looks: dict, floor: float) -> None:
     errors = numpy.maximum(cells["error"].to_numpy(), floor)
     times = cells["frame_ms.median"].to_numpy()
-    low, high = (cells[f"frame_ms.ci_{end}"].to_numpy() for end in ("low", "high"))
+    low, high = (cells[f"frame_ms.ci_{end}"].to_numpy(dtype=float) for end in ("low", "high"))
     colours = [looks[label]["color"] for label in cells["label"]]
     axes.hlines(errors, low, high, colors=colours, linewidth=1.2, zorder=2)
     _draw_points(axes, times, errors, cells["label"], looks)

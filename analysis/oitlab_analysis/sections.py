@@ -15,9 +15,10 @@ from .clock import frame_note, stage_note
 from .formats import NOTHING
 from .labels import add_labels
 from .device_notes import note_of
-from .statistics import compare_group, disagreements
+from .statistics import OTHER_RUN, compare_setting, disagreements
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")
+SETTING = ("scene", "opacity", "detail", "content_hash", "view", "width", "height", "format")
 RELEASE_BUILDS = ("release", "relwithdebinfo", "minsizerel")
 
 
@@ -30,7 +31,7 @@ class Section:
     context: dict[str, str]
     warnings: list[str]
     commands: list[str]
-    cells: dict[str, dict]  # the measured ones, by id
+    cells: dict[str, dict]  # the measured ones, by key
 
     def settings(self) -> list[tuple[str, pandas.DataFrame]]:
         """The cells of each setting, in the order of the table."""
@@ -45,15 +46,17 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
     """Adds `baseline`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks`, `verdict` and
     `device_note`: what a reader must know of a ratio to this baseline on this device, or "".
 
-    Pairs only cells of one group that also share their whole context.
+    Compares only cells that share their whole context and setting, and of these only cells of one
+    run. `baseline` is the id of the cell that the ratio is to, missing where there is no ratio.
     """
     compared = {}
     measured = table[table["status"] == "ok"]
-    for _, group in measured.groupby([*CONTEXT, "group"], dropna=False):
-        compared |= compare_group([cells[identity] for identity in group["id"]])
+    for _, setting in measured.groupby([*CONTEXT, *SETTING], dropna=False):
+        compared |= compare_setting({key: cells[key] for key in setting["key"]})
     table = table.copy()
-    pairs = [compared.get(identity) for identity in table["id"]]
-    table["baseline"] = [pair[0] if pair else None for pair in pairs]
+    pairs = [compared.get(key) for key in table["key"]]
+    table["baseline"] = [cells[pair[0]]["id"] if pair and pair[1].ratio is not None else None
+                         for pair in pairs]
     for column, field in (
         ("ratio", "ratio"),
         ("ratio.low", "low"),
@@ -63,7 +66,7 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
     ):
         table[column] = [getattr(pair[1], field) if pair else None for pair in pairs]
     table["device_note"] = [
-        note_of(device, cells[pair[0]]["method"]) if pair else ""
+        note_of(device, cells[pair[0]]["method"]) if pair and pair[1].ratio is not None else ""
         for device, pair in zip(table["device"], pairs)
     ]
     return table
@@ -104,13 +107,14 @@ def _section(collection: Collection, group: pandas.DataFrame, varying: list[str]
         "Profile": ", ".join(sorted(set(group["profile"]))),
         "Seeds": ", ".join(sorted({f"{seed:g}" for seed in group["seed"].dropna()})) or NOTHING,
     }
-    cells = {i: collection.cells[i] for i in group.loc[group["status"] == "ok", "id"]}
+    cells = {key: collection.cells[key] for key in group.loc[group["status"] == "ok", "key"]}
     measured = list(cells.values())
     return Section(
         title=title,
         table=add_labels(group),
         context=context,
-        warnings=_context_warnings(first) + _device_notes(group) + _measurement_warnings(measured),
+        warnings=(_context_warnings(first) + _device_notes(group) + _other_runs(group)
+                  + _measurement_warnings(measured)),
         commands=sorted(set(group["command"]) - {""}),
         cells=cells,
     )
@@ -135,6 +139,14 @@ def _context_warnings(first: pandas.Series) -> list[str]:
 
 def _device_notes(group: pandas.DataFrame) -> list[str]:
     return [f"Ratios marked ‡: {note}" for note in dict.fromkeys(group["device_note"]) if note]
+
+
+def _other_runs(group: pandas.DataFrame) -> list[str]:
+    """How many cells have no ratio because another run measured their baseline; empty where none."""
+    alone = int((group["verdict"] == OTHER_RUN).sum())
+    return [f"{alone} of {len(group)} cells have no ratio: another run of the program measured them than "
+            "their baseline (verdict: other run). Remove all cells of these settings and run again to "
+            "compare them."] if alone else []
 
 
 def _measurement_warnings(cells: list[dict]) -> list[str]:

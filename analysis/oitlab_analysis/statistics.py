@@ -17,10 +17,16 @@ interval  95% percentile bootstrap of that median, blocks drawn with replacement
           same cells give the same report. With fewer than 6 common blocks there is none: the widest
           distribution-free interval of a median, from the least to the greatest of n values, covers
           it with 1 - 2^(1-n), which is 0.9375 for n = 5 and 0.969 for n = 6.
-baseline  The `blend` cell of the group (the fastest, if there are several); in a group without one,
-          the fastest cell by median frame time.
+baseline  One cell of a setting (scene, view, size, format), never two. It is a `blend` cell where the
+          setting has one: of the run with most cells of this setting, the newest of equals; in that
+          run the one in submission order, or the fastest. A setting without `blend` takes the
+          fastest cell, by median frame time, of the run with most cells.
+run       Cells of one group were measured in turn, by one run of the program. Blocks of two runs are
+          no pairs: a cell of another run than its baseline has no ratio.
 verdict   The first of these that holds:
           "baseline"   the cell is the baseline itself
+          "other run"  the cell was measured in another run than the baseline
+          "unpaired"   the two have no block in common
           "ambiguous"  no interval
           "same"       the interval lies within [1/1.01, 1.01]: a difference above 1% is ruled out
                        (an equivalence test by interval inclusion, Schuirmann 1987, two-sided 95%)
@@ -44,6 +50,8 @@ LEVEL = 0.95
 SAME_WITHIN = 1.01
 FEWEST_BLOCKS = 6
 RESAMPLES = 4000
+# Verdicts of cells without a ratio.
+OTHER_RUN, UNPAIRED = "other run", "unpaired"
 SEED = 20240229
 
 
@@ -71,6 +79,11 @@ def block_medians(times_ms: Sequence[float], blocks: Sequence[int]) -> dict[int,
     found, starts, counts = numpy.unique(numbers, return_index=True, return_counts=True)
     medians = (times[starts + (counts - 1) // 2] + times[starts + counts // 2]) / 2
     return dict(zip(found.tolist(), medians.tolist()))
+
+
+def block_medians_of(cell: dict) -> dict[int, float]:
+    """block_medians() of the frames of a measured cell."""
+    return block_medians(cell["samples"]["frame_ms"], cell["samples"]["block"])
 
 
 @functools.lru_cache(maxsize=64)
@@ -125,7 +138,7 @@ def compare(cell: dict[int, float], baseline: dict[int, float]) -> Comparison:
     """Compares the block medians of a cell with those of its baseline, paired by block number."""
     common = sorted(cell.keys() & baseline.keys())
     if not common:
-        return Comparison(None, None, None, 0, "ambiguous")
+        return Comparison(None, None, None, 0, UNPAIRED)
     ratios = [cell[block] / baseline[block] for block in common]
     interval = bootstrap_interval(ratios)
     low, high = interval or (None, None)
@@ -135,29 +148,46 @@ def compare(cell: dict[int, float], baseline: dict[int, float]) -> Comparison:
 def compare_cells(cell: dict, baseline: dict) -> Comparison:
     """compare() of two cells; without a ratio unless they were measured in turn, in one group."""
     if cell["group"] != baseline["group"]:
-        return Comparison(None, None, None, 0, "ambiguous")
+        return Comparison(None, None, None, 0, OTHER_RUN)
     if cell is baseline:
         return Comparison(1.0, None, None, 0, "baseline")
-    return compare(*(block_medians(c["samples"]["frame_ms"], c["samples"]["block"])
-                     for c in (cell, baseline)))
+    return compare(block_medians_of(cell), block_medians_of(baseline))
 
 
-def choose_baseline(methods: dict[str, str], medians_ms: dict[str, float]) -> str:
-    """The id of the baseline among the cells of a group (id -> method, id -> median)."""
-    blends = [cell for cell, method in methods.items() if method == "blend"]
-    return min(blends or methods, key=lambda cell: (medians_ms[cell], cell))
+def choose_baseline(cells: dict[str, dict]) -> str:
+    """The key of the baseline among the measured cells of one setting, by the rule of this module."""
+    blends = [key for key, cell in cells.items() if cell["method"] == "blend"]
+    runs: dict[str, list[dict]] = {}
+    for cell in cells.values():
+        runs.setdefault(cell["group"], []).append(cell)
+
+    def rank(key: str) -> tuple:
+        cell, run = cells[key], runs[cells[key]["group"]]
+        newest = max(other["provenance"].get("date") or "" for other in run)
+        return len(run), newest, cell["group"]
+
+    candidates = blends or list(cells)
+    group = cells[max(candidates, key=rank)]["group"]
+    return min((key for key in candidates if cells[key]["group"] == group),
+               key=lambda key: (cells[key]["parameters"].get("order", "submission") != "submission",
+                                cells[key]["statistics"]["frame"]["median"], key))
 
 
-def compare_group(cells: list[dict]) -> dict[str, tuple[str, Comparison]]:
-    """For each cell of a group: the id of its baseline, and the comparison with it."""
-    medians = {cell["id"]: cell["statistics"]["frame"]["median"] for cell in cells}
-    baseline = choose_baseline({cell["id"]: cell["method"] for cell in cells}, medians)
-    blocks = {
-        cell["id"]: block_medians(cell["samples"]["frame_ms"], cell["samples"]["block"])
-        for cell in cells
-    }
-    result = {cell: (baseline, compare(blocks[cell], blocks[baseline])) for cell in blocks}
-    result[baseline] = (baseline, Comparison(1.0, None, None, len(blocks[baseline]), "baseline"))
+def compare_setting(cells: dict[str, dict]) -> dict[str, tuple[str, Comparison]]:
+    """For each measured cell of one setting, by key: the key of its baseline, and the comparison.
+
+    All have the same baseline; a cell of another run has no ratio to it.
+    """
+    base = choose_baseline(cells)
+    blocks = block_medians_of(cells[base])
+    result = {}
+    for key, cell in cells.items():
+        if key == base:
+            result[key] = base, Comparison(1.0, None, None, len(blocks), "baseline")
+        elif cell["group"] != cells[base]["group"]:
+            result[key] = base, Comparison(None, None, None, 0, OTHER_RUN)
+        else:
+            result[key] = base, compare(block_medians_of(cell), blocks)
     return result
 
 

@@ -89,8 +89,8 @@ def against(section: Section, line: Line, value: float) -> list[Comparison] | No
     """Each cell of a line against the one where the parameter has this value; None without one."""
     if value not in line.values:
         return None
-    base = section.cells[line.cells["id"].iloc[line.values.index(value)]]
-    return [compare_cells(section.cells[identity], base) for identity in line.cells["id"]]
+    base = section.cells[line.cells["key"].iloc[line.values.index(value)]]
+    return [compare_cells(section.cells[key], base) for key in line.cells["key"]]
 
 
 def draw_depth_filter(section: Section, page: int = 0, metric: str = "") -> Figure | None:

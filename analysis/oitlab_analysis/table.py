@@ -21,9 +21,9 @@ def describe(row: dict) -> dict[str, str]:
     if row["status"] != "ok":
         return {"frame": row["status"], "reason": row["reason"].strip() or "no reason given"}
     frame = formats.with_interval(
-        row["frame_ms.median"], row["frame_ms.ci_low"], row["frame_ms.ci_high"]
+        row["frame_ms.median"], row["frame_ms.ci_low"], row["frame_ms.ci_high"], row["blocks"]
     )
-    ratio = formats.with_interval(row["ratio"], row["ratio.low"], row["ratio.high"])
+    ratio = formats.with_interval(row["ratio"], row["ratio.low"], row["ratio.high"], row["ratio.blocks"])
     return {
         "frame": frame + (" †" if row.get("stop.reason") in UNSETTLED else ""),
         "ratio": "1" if row["verdict"] == "baseline" else ratio + (NOTED if row["device_note"] else ""),

@@ -103,7 +103,7 @@ def section_of(contexts: list[Context], experiment: str):
         return None
     context = contexts[max(counts)[2]]
     cells = {c["id"]: c for c in context.cells if c["experiment"] == experiment}
-    collection = Collection(Path(), as_table(cells), cells, [])
+    collection = Collection(as_table(cells), cells, {}, [])
     return make_sections(collection, add_comparisons(collection.table, cells))[0]
 
 

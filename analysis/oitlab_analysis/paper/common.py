@@ -6,7 +6,9 @@ import statistics
 from collections.abc import Callable
 
 from .. import clock
+from ..cells import block_count as cell_blocks
 from ..device_notes import note_of
+from ..statistics import FEWEST_BLOCKS
 from ..table import NOTED
 from .agreement import Pairs
 from .measured import Context, Measurements, choose
@@ -37,7 +39,9 @@ def _frame(cell: dict, scale: float) -> Number:
     frame = cell["statistics"]["frame"]
     if not clock.frames_are_slow(cell):
         return Number(scale * frame["median"])
-    low, high = frame["ci95"]
+    low, high = frame.get("ci95") or (None, None)
+    if low is None or cell_blocks(cell) < FEWEST_BLOCKS:
+        return Number(scale * frame["median"], mark=SLOW)
     return Number(scale * frame["median"], scale * low, scale * high, mark=SLOW)
 
 

@@ -6,14 +6,13 @@ such context, and says how many others there were.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..cells import BadResults, Collection, collect
-from ..packs import PACK_SUFFIX
+from ..cells import Collection, collect, fingerprint
 from ..report import left_out
+from ..sources import BadResults, sources_in
 from ..statistics import Comparison, compare_cells
 
 
@@ -56,28 +55,12 @@ class Measurements:
         return [context for context in self.contexts if context.device == device]
 
 
-def sources_in(paths: list[Path]) -> list[Path]:
-    """Results folders and packs; any other folder stands for those right inside it.
-
-    Each pack is a source of its own: experiments share cells, which then have the same id.
-    """
-    found = []
-    for path in paths:
-        if not path.is_dir() or (path / "cells").is_dir():
-            found.append(path)
-        elif packs := sorted(path.glob("*" + PACK_SUFFIX)):
-            found += packs
-        else:
-            found += sources_in(sorted(p for p in path.iterdir() if p.is_dir())) or [path]
-    return found
-
-
 def gather(paths: list[Path]) -> Measurements:
     """Reads all folders. One that cannot be read is named; BadResults if none can."""
     warnings, collections = [], []
     for path in sources_in(paths):
         try:
-            collections.append(collect(path))
+            collections.append((path, collect(path)))
         except BadResults as error:
             warnings.append(f"{error}")
     if not collections:
@@ -86,28 +69,22 @@ def gather(paths: list[Path]) -> Measurements:
         raise BadResults(f"{', '.join(map(str, paths))}: no results there; run the experiments first, for "
                          "example: oitlab run experiments/performance.toml")
     contexts: dict[tuple, Context] = {}
-    seen: dict[str, str] = {}
+    seen: set[str] = set()
     repeated = 0
-    for collection in collections:
-        warnings += [f"{collection.folder}: {text}" for text in left_out(collection.problems)]
+    for path, collection in collections:
+        warnings += [f"{path}: {text}" for text in left_out(collection.problems)]
         for cell in collection.cells.values():
-            text = _fingerprint(cell)
+            text = fingerprint(cell)
             if text in seen:
                 repeated += 1
                 continue
-            seen[text] = cell["id"]
+            seen.add(text)
             _context(contexts, cell).cells.append(cell)
     if repeated:
         warnings.append(f"{repeated} cells were given twice, and count once.")
     for context in contexts.values():
         context.cells.sort(key=lambda cell: cell["provenance"].get("date") or "")
-    return Measurements(list(contexts.values()), warnings + _states(collections))
-
-
-def _fingerprint(cell: dict) -> str:
-    times = cell.get("samples", {}).get("frame_ms")
-    return json.dumps([cell["id"], cell["provenance"].get("date"), cell["provenance"]["commit"],
-                       cell["experiment"], None if times is None else times[:8].tolist()])
+    return Measurements(list(contexts.values()), warnings + _states([collection for _, collection in collections]))
 
 
 def _context(contexts: dict[tuple, Context], cell: dict) -> Context:

@@ -5,7 +5,8 @@ import json
 import random
 
 import pytest
-from oitlab_analysis.cells import BadResults, collect
+from oitlab_analysis.cells import collect
+from oitlab_analysis.sources import BadResults
 from oitlab_analysis.report import make_report
 from synthetic import make_cell, make_results, without_measurement, write_cell
 
@@ -133,7 +134,7 @@ def test_junk_anywhere_in_a_cell_never_breaks_the_report(tmp_path, seed, monkeyp
         else:
             parent[path[-1]] = choose.choice(JUNK)
         write(tmp_path, f"{number}.json", json.dumps(cell))
-    result = make_report(tmp_path)
+    result = make_report([tmp_path])
     assert "whole" in result.text
     assert "\x1b" not in result.text
     assert "<b>" not in (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -62,7 +62,7 @@ def test_the_report_leaves_slow_stages_out_and_says_so(tmp_path):
     section, = make_sections(collection, add_comparisons(collection.table, collection.cells))
     figure = bars.draw_stages(section, bars.paginate(section)[0])
     assert len(figure.axes) == 1, "a panel for teapot alone"
-    said = " ".join(make_report(tmp_path).text.split())
+    said = " ".join(make_report([tmp_path]).text.split())
     assert "Stage times of 1 of 2 cells were left out" in said and "The median frame of 1 of 2 cells" in said
 
 
@@ -84,7 +84,7 @@ def test_a_line_says_what_the_clock_did(record, line):
 
 def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
     def texts():
-        terminal = " ".join(make_report(tmp_path).text.split())
+        terminal = " ".join(make_report([tmp_path]).text.split())
         return terminal, *((tmp_path / f"report.{kind}").read_text(encoding="utf-8") for kind in ("html", "md"))
 
     write_cell(tmp_path, make_cell("city"))  # made before the clock was recorded
@@ -94,7 +94,7 @@ def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
     write_cell(tmp_path, with_clock(make_cell("tree"), unsettled=2, settled=False))
     write_cell(tmp_path, make_cell("pipes") | {"clock": {"settled": True}})
     terminal, html, markdown = texts()
-    assert "1 file in cells/ was left out" in terminal and "/clock/rejected_blocks: missing" in terminal
+    assert "1 file was left out" in terminal and "/clock/rejected_blocks: missing" in terminal
     for text in (terminal, html, markdown):
         assert "settled, at full, in 2 of the 3 cells that recorded it; 3 blocks measured again" in text
     marked = [row for row in html.split("<tr>") if " §</td>" in row]

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from oitlab_analysis.__main__ import main
-from oitlab_analysis.cells import BadResults
+from oitlab_analysis.sources import BadResults
 from oitlab_analysis.diff import diff, markdown, terminal
 from oitlab_analysis.packs import without_folders
 from synthetic import DEVICE, LAVAPIPE, make_cell, without_measurement, write_cell
@@ -33,8 +33,8 @@ def test_a_change_of_known_size_has_its_ratio_and_verdict(tmp_path):
     changes = by_method(diff(a, b))
     assert changes["lucid"].ratio == pytest.approx(0.8, rel=0.01)
     assert changes["lucid"].verdict == changes["lucid"].blend_verdict == "faster"
-    assert changes["lucid"].shaders == ["lucid/raster.comp"]
-    assert changes["wboit"].blend_verdict == "same" and changes["wboit"].shaders == []
+    assert changes["lucid"].shaders.changed == ["lucid/raster.comp"]
+    assert changes["wboit"].blend_verdict == "same" and changes["wboit"].shaders.line() == ""
     assert changes["blend"].against_blend is None
 
 
@@ -78,6 +78,36 @@ def test_images_that_differ_are_said_with_their_error(tmp_path):
     result = diff(a, b)
     assert [c.cell["method"] for c in result.changes if c.image_changed] == ["lucid"]
     assert "image differs, RMSE 0 to 0.500" in terminal(result)
+
+
+def with_shaders(folder, shaders):
+    """The cells of lucid with these shaders."""
+    for path in (folder / "cells").glob("*lucid*"):
+        cell = json.loads(path.read_text())
+        cell["provenance"]["shaders"] = shaders
+        path.write_text(json.dumps(cell))
+
+
+def test_shaders_of_other_methods_of_the_process_are_no_change(tmp_path):
+    """Older cells hold what the whole process had compiled: run alone, a method has fewer."""
+    a, b = (write(tmp_path / name, {"lucid": 3.0}) for name in "ab")
+    with_shaders(a, {"lucid/raster.comp": "1", "common/scene.vert": "2", "common/scene.vert WEIGHT=7": "3"})
+    with_shaders(b, {"lucid/raster.comp": "1", "common/scene.vert": "2"})
+    assert by_method(diff(a, b))["lucid"].shaders.line() == ""
+    assert "shaders" not in terminal(diff(a, b))
+
+
+def test_changed_shaders_are_one_line_and_named_on_request(tmp_path):
+    a, b = (write(tmp_path / name, {"lucid": 3.0}) for name in "ab")
+    with_shaders(a, {"lucid/raster.comp A=1": "1", "lucid/sort.comp": "1", "old.comp": "1"})
+    with_shaders(b, {"lucid/raster.comp A=1": "2", "lucid/sort.comp": "1", "new.comp": "1"})
+    result = diff(a, b)
+    assert "shaders: 1 of 2 changed" in terminal(result) and "raster.comp" not in terminal(result)
+    told = terminal(result, details=True)
+    for text in ("changed: lucid/raster.comp A=1", "only in A: old.comp", "only in B: new.comp"):
+        assert text in told
+    with_shaders(b, {"lucid/other.comp": "2"})
+    assert "shaders: none in common" in terminal(diff(a, b))
 
 
 def test_what_is_only_in_one_or_failed_is_named(tmp_path):

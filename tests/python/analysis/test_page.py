@@ -31,7 +31,7 @@ def folder(tmp_path_factory):
             picture = Image.new("RGB", (64, 36), (40, 20, 25) if exact else (10, 20, 30))
             picture.putpixel((5, 7), (200, 100, 50))
             picture.save(folder / cell["image"]["file"])
-    make_report(folder)
+    make_report([folder])
     return folder
 
 
@@ -152,7 +152,7 @@ def test_pictures_beyond_the_budget_are_shown_from_the_disk(browser, tmp_path, m
     monkeypatch.setattr("oitlab_analysis.images.MOST_BYTES", 0)
     monkeypatch.setattr("oitlab_analysis.plots.save_charts", lambda sections, *_: ([[]] * len(sections), 0))
     make_results(tmp_path, methods=2, scenes=1)
-    make_report(tmp_path)
+    make_report([tmp_path])
     assert "2 did not fit into the page" in (tmp_path / "report.html").read_text(encoding="utf-8")
     browser.open(tmp_path / "report.html")
     browser.run("document.querySelector('.viewer').scrollIntoView()")
@@ -166,7 +166,7 @@ def test_pictures_beyond_the_budget_are_shown_from_the_disk(browser, tmp_path, m
 @pytest.mark.skipif("OITLAB_SLOW" not in os.environ, reason="takes half a minute; OITLAB_SLOW=1 runs it")
 def test_a_page_of_2000_cells_is_usable(browser, tmp_path):
     make_sweep(tmp_path, 2000)
-    make_report(tmp_path)
+    make_report([tmp_path])
     assert (tmp_path / "report.html").stat().st_size < 15_000_000
     browser.open(tmp_path / "report.html")
     took = browser.run("""const head = document.querySelectorAll('th button')[4];

@@ -176,3 +176,13 @@ def test_only_so_many_charts_are_drawn_unless_all_are_wanted(tmp_path, monkeypat
     kinds = {chart.name.split("-1")[0] for chart in some[0]}
     wanted = {kind for kind in plots.KINDS if not kind.startswith("bma")}
     assert kinds == wanted, "the first chart of every kind is among them"
+
+
+def test_figures_of_a_paper_are_drawn_for_its_experiment_only(tmp_path, monkeypatch):
+    monkeypatch.setattr(plots, "save", lambda figure, path: None)
+    counters = {"pixels_8": 100, "pixels_16": 20, "fragments": 900}
+    for experiment, wanted in (("bma", True), ("methods", False)):
+        folder = tmp_path / experiment
+        write_cell(folder, make_cell(method="abuffer", experiment=experiment, counters=counters))
+        charts = plots.save_charts([section_of(folder)], tmp_path / "plots")[0][0]
+        assert any(chart.name.startswith("bma") for chart in charts) == wanted

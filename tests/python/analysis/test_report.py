@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 import numpy
 import pytest
 from program import ROOT
+from oitlab_analysis.cells import collect
 from oitlab_analysis.images import smaller
 from oitlab_analysis.report import make_report
 from PIL import Image
@@ -27,7 +28,7 @@ def run(*arguments):
 
 
 def html_of(folder):
-    make_report(folder)
+    make_report([folder])
     return (folder / "report.html").read_text(encoding="utf-8")
 
 
@@ -77,7 +78,7 @@ def results(tmp_path_factory):
     for method, status, reason in (("adaptive|2", "failed", "device lost after 3 | frames <b>"),
                                    ("interlock", "skipped", "needs fragment interlock")):
         write_cell(folder, without_measurement(make_cell("boxes", method), status, reason))
-    make_report(folder)
+    make_report([folder])
     return folder
 
 
@@ -128,7 +129,7 @@ def test_a_results_folder_that_cannot_be_written_is_one_line(tmp_path):
 def test_help_says_what_is_written_and_the_exit_codes():
     done = run("report", "--help")
     assert done.returncode == 0
-    for word in ("report.html", "cells.csv", "exit codes", "RESULTS_DIR"):
+    for word in ("report.html", "cells.csv", "exit codes", "RESULTS", "--out"):
         assert word in done.stdout
 
 
@@ -214,7 +215,7 @@ def test_cells_of_different_context_are_kept_apart(tmp_path):
                 cell = make_cell(method=method, frame_ms=time * scale, device=device,
                                  provenance=provenance, group="one")
                 write_cell(tmp_path, cell | {"id": f"{commit}-{cell['id']}"})
-    result = make_report(tmp_path)
+    result = make_report([tmp_path])
     text = result.text
     assert text.count("\n\nboxes ·") == 4
     with open(tmp_path / "cells.csv", encoding="utf-8", newline="") as file:
@@ -247,7 +248,7 @@ def test_warnings(tmp_path, changes, warning):
     for key, change in changes.items():
         cell[key] = cell[key] | change
     write_cell(tmp_path, cell)
-    result = make_report(tmp_path)
+    result = make_report([tmp_path])
     flat = " ".join(result.text.split())
     assert (warning in flat) if warning else ("warning" not in flat)
     assert ("†" in flat) == ("time_limit" in str(changes))
@@ -261,19 +262,109 @@ def test_an_edited_shader_within_a_commit_is_noticed(tmp_path):
         cell = make_cell(method=method)
         cell["provenance"] = cell["provenance"] | {"shaders": {"common/shade.glsl": digest}}
         write_cell(tmp_path, cell)
-    assert "Shader common/shade.glsl has 2 versions" in make_report(tmp_path).text
+    assert "Shader common/shade.glsl has 2 versions" in make_report([tmp_path]).text
 
 
 def test_few_blocks_give_a_ratio_without_a_verdict(tmp_path):
     for method, time in (("blend", 1.0), ("lucid", 3.0)):
         write_cell(tmp_path, make_cell(method=method, frame_ms=time, blocks=4))
-    line = next(x for x in make_report(tmp_path).text.splitlines() if x.startswith("lucid"))
-    assert re.search(r"\s(2\.9\d|3\.0\d)\s+ambiguous", line)
+    line = next(x for x in make_report([tmp_path]).text.splitlines() if x.startswith("lucid"))
+    assert re.search(r"\s(2\.9\d|3\.0\d) \(n = 4\)\s+ambiguous", line)
+
+
+def test_one_sample_has_no_interval(tmp_path):
+    """A bootstrap of one value has no width, and says nothing."""
+    write_cell(tmp_path, make_cell(blocks=1, frames=1))
+    text = make_report([tmp_path]).text
+    assert re.search(r"^blend  .*\d \(n = 1\) ", text, re.M) and "[" not in text.split("verdict")[1]
+    with open(tmp_path / "cells.csv", encoding="utf-8", newline="") as file:
+        row, = csv.DictReader(file)
+    assert (row["frame_ms.ci_low"], row["frame_ms.ci_high"], row["blocks"]) == ("", "", "1")
+
+
+def test_a_cell_without_an_interval_is_a_cell(tmp_path):
+    cell = make_cell(blocks=2)
+    cell["statistics"]["frame"]["ci95"] = None
+    write_cell(tmp_path, cell)
+    assert "(n = 2)" in make_report([tmp_path]).text
+
+
+def resumed(folder):
+    """A group of which two methods were lost, and measured again by another run."""
+    for method, parameters, time, rmse in (("blend", {}, 2.0, 0.1), ("reference", {}, 6.0, 0.0),
+                                           ("wboit", {}, 2.4, 0.05)):
+        write_cell(folder, make_cell(method=method, parameters=parameters, frame_ms=time, rmse=rmse, group="1"))
+    for method, time in (("lucid", 5.0), ("moment", 4.0)):
+        write_cell(folder, make_cell(method=method, frame_ms=time, group="2"))
+    return folder
+
+
+def test_a_group_measured_in_two_runs_has_one_baseline(tmp_path):
+    text = make_report([resumed(tmp_path)]).text
+    lines = {line.split()[0]: line for line in text.splitlines() if line and line[0] != " "}
+    assert text.count(" baseline") == 1 + 1, "blend, and the warning"
+    assert re.search(r" 1\.200 \[.* slower ", lines["wboit"])
+    for method in ("lucid", "moment"):
+        assert re.search(r"–\s+other run", lines[method]), "a dash, and a word why"
+    assert "2 of 5 cells have no ratio: another run" in " ".join(text.split())
+    with open(tmp_path / "cells.csv", encoding="utf-8", newline="") as file:
+        rows = {row["method"]: row for row in csv.DictReader(file)}
+    assert rows["lucid"]["ratio"] == rows["lucid"]["baseline"] == ""
+    assert rows["wboit"]["baseline"].startswith("boxes-default-64x36-blend")
+
+
+def test_packs_and_several_folders(tmp_path):
+    """Two experiments share a cell's id; both count. Nothing is written unless asked."""
+    for experiment in ("one", "two"):
+        make_results(tmp_path / experiment, 2, 1, experiment=experiment)
+        for path in (tmp_path / experiment / "cells").iterdir():
+            cell = json.loads(path.read_text())
+            path.write_text(json.dumps(cell | {"id": f"boxes-{cell['method']}"}))
+        assert run("pack", tmp_path / experiment, tmp_path / "data" / f"{experiment}.json.gz").returncode == 0
+    before = sorted((tmp_path / "data").iterdir())
+    for given in ([tmp_path / "data"], [tmp_path / "one", tmp_path / "two"], before):
+        result = make_report(given)
+        assert "4 cells: 4 measured" in result.text and "left out" not in result.text
+        assert result.files == [] and "Nothing was written: --out" in result.text
+    assert "2 cells: 2 measured" in make_report(before[:1]).text
+    assert sorted((tmp_path / "data").iterdir()) == before
+    assert not (tmp_path / "one" / "report.html").exists()
+    result = make_report([tmp_path / "one", tmp_path / "two"], tmp_path / "out")
+    assert len(embedded_pictures((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))) == 3
+    markdown = (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
+    links = [link for link in re.findall(r"!\[[^\]]*\]\(([^)]*)\)", markdown) if "plots/" not in link]
+    assert len(links) == 4 and all((tmp_path / "out" / link).is_file() for link in links)
+    packed = make_report([tmp_path / "data"], tmp_path / "packed")
+    assert len(packed.files) == 3 and "a pack holds no images" in packed.files[0].read_text(encoding="utf-8")
+
+
+def test_two_versions_of_a_cell_in_two_folders_are_both_shown(tmp_path):
+    for commit in ("abc1234", "def5678"):
+        provenance = make_cell()["provenance"] | {"commit": commit}
+        write_cell(tmp_path / commit, make_cell(provenance=provenance))
+    text = make_report([tmp_path / "abc1234", tmp_path / "def5678"]).text
+    assert "2 cells: 2 measured" in text and "2 commits" in text
+    again = make_report([tmp_path / "abc1234", tmp_path / "abc1234"]).text
+    assert "1 cells were given twice" in again and "1 cells: 1 measured" in again
+
+
+def test_nothing_is_written_into_a_folder_that_git_tracks(tmp_path):
+    make_results(tmp_path, 1, 1)
+    for command in (["git", "init", "-q"], ["git", "add", "cells"]):
+        subprocess.run(command, cwd=tmp_path, check=True)
+    assert make_report([tmp_path]).files == []
+    assert sorted(p.name for p in tmp_path.iterdir()) == [".git", "cells", "images"]
+
+
+@pytest.mark.skipif(not (ROOT / "paper/data/h200").is_dir(), reason="no published cells")
+def test_every_published_cell_is_in_the_report():
+    collection = collect(ROOT / "paper/data/h200")
+    assert len(collection.table) == 1023 and collection.problems == [] and collection.repeated == 0
 
 
 def test_labels_show_only_parameters_that_differ(tmp_path):
     make_results(tmp_path, methods=5, scenes=1)
-    text = make_report(tmp_path).text
+    text = make_report([tmp_path]).text
     assert "lucid (tile=8)" in text and "lucid (tile=16)" in text
     assert "early_out" not in text and "submission" not in text
 
@@ -283,14 +374,14 @@ def test_scenes_that_differ_by_opacity_are_not_merged(tmp_path):
         cell = make_cell()
         cell["scene"]["opacity"] = opacity
         write_cell(tmp_path, cell | {"id": f"at-{opacity}"})
-    text = make_report(tmp_path).text
+    text = make_report([tmp_path]).text
     assert "boxes (opacity=0.250)" in text and "boxes (opacity as modelled)" in text
 
 
 def test_cells_that_nothing_tells_apart_are_numbered(tmp_path):
     for seed in (1, 2):
         write_cell(tmp_path, make_cell(seed=seed) | {"id": f"seed-{seed}"})
-    text = make_report(tmp_path).text
+    text = make_report([tmp_path]).text
     assert re.search(r"^blend  ", text, re.M) and re.search(r"^blend #2  ", text, re.M)
 
 
@@ -381,7 +472,7 @@ def test_a_copy_averages_the_pixels_that_it_drops():
 def test_a_device_note_stands_beside_every_ratio_to_blend(tmp_path):
     h200 = DEVICE | {"name": "NVIDIA H200"}
     make_results(tmp_path, methods=3, scenes=2, device=h200)
-    result = make_report(tmp_path)
+    result = make_report([tmp_path])
     ratios = [line for line in result.text.splitlines() if line.startswith(("wboit", "reference"))]
     assert len(ratios) == 4 and all("‡" in line for line in ratios)
     assert "2 of its 66 TPCs" in " ".join(result.text.split())
@@ -394,4 +485,4 @@ def test_a_device_note_stands_beside_every_ratio_to_blend(tmp_path):
 
 def test_other_devices_have_no_such_note(tmp_path):
     make_results(tmp_path, methods=3, scenes=1)
-    assert "‡" not in make_report(tmp_path).text
+    assert "‡" not in make_report([tmp_path]).text

@@ -43,7 +43,7 @@ def test_ratio_uses_common_blocks_only():
 
 def test_without_common_blocks_there_is_no_ratio():
     result = statistics.compare({0: 1.0}, {1: 1.0})
-    assert (result.ratio, result.low, result.verdict) == (None, None, "ambiguous")
+    assert (result.ratio, result.low, result.verdict) == (None, None, "unpaired")
 
 
 @pytest.mark.parametrize(
@@ -95,21 +95,51 @@ def test_interval_covers_the_true_median_as_often_as_it_claims(draw):
     assert 0.91 <= covered / 500 <= 0.98
 
 
-def test_baseline_is_blend_else_the_fastest():
-    medians = {"a": 1.0, "b": 3.0, "c": 2.0}
-    methods = {"a": "lucid", "b": "blend", "c": "blend"}
-    assert statistics.choose_baseline(methods, medians) == "c"
-    assert statistics.choose_baseline(dict.fromkeys("abc", "lucid"), medians) == "a"
+def runs(*cells):
+    """Cells of (method, frame ms, run, parameters, date), by the names a, b, c ..."""
+    made = {}
+    for name, (method, time, run, parameters, date) in zip("abcdefgh", cells):
+        cell = make_cell(method=method, frame_ms=time, parameters=parameters, group=run)
+        cell["provenance"] = cell["provenance"] | {"date": date}
+        made[name] = cell
+    return made
 
 
-def test_a_group_is_compared_with_its_baseline():
-    cells = [make_cell(method="blend", frame_ms=2.0), make_cell(method="lucid", frame_ms=1.0),
-             make_cell(method="moment", frame_ms=2.002), make_cell(method="wboit", frame_ms=2.5)]
-    found = statistics.compare_group(cells)
-    assert {base for base, _ in found.values()} == {cells[0]["id"]}
-    assert [found[cell["id"]][1].verdict for cell in cells] == [
-        "baseline", "faster", "same", "slower"]
-    assert found[cells[3]["id"]][1].ratio == pytest.approx(1.25, rel=0.01)
+SUBMISSION, SORTED = {"order": "submission"}, {"order": "sorted"}
+
+
+@pytest.mark.parametrize("cells, wanted", [
+    # blend although others are faster, submission order although sorted is
+    ([("lucid", 1, "1", {}, ""), ("blend", 3, "1", SUBMISSION, ""), ("blend", 2, "1", SORTED, "")], "b"),
+    ([("lucid", 1, "1", {}, ""), ("lucid", 3, "1", {"n": 2}, "")], "a"),
+    # blend of a small run rather than the fastest of a large one
+    ([("lucid", 1, "1", {}, ""), ("wboit", 2, "1", {}, ""), ("blend", 9, "2", SUBMISSION, "")], "c"),
+    # of the run with most cells
+    ([("blend", 1, "1", SORTED, "2"), ("blend", 2, "2", SUBMISSION, "1"), ("lucid", 9, "2", {}, "1")], "b"),
+    # of the newest of two equally large runs
+    ([("blend", 1, "2", SORTED, "2026-01"), ("blend", 2, "1", SUBMISSION, "2026-02")], "b"),
+])
+def test_the_baseline_of_a_setting(cells, wanted):
+    assert statistics.choose_baseline(runs(*cells)) == wanted
+
+
+def test_a_setting_is_compared_with_its_baseline():
+    cells = {cell["method"]: cell for cell in (
+        make_cell(method="blend", frame_ms=2.0), make_cell(method="lucid", frame_ms=1.0),
+        make_cell(method="moment", frame_ms=2.002), make_cell(method="wboit", frame_ms=2.5))}
+    found = statistics.compare_setting(cells)
+    assert {base for base, _ in found.values()} == {"blend"}
+    assert [found[method][1].verdict for method in cells] == ["baseline", "faster", "same", "slower"]
+    assert found["wboit"][1].ratio == pytest.approx(1.25, rel=0.01)
+
+
+def test_cells_of_two_runs_have_one_baseline_and_no_ratio_across():
+    found = statistics.compare_setting(runs(
+        ("blend", 2, "first", SUBMISSION, ""), ("wboit", 3, "first", {}, ""), ("reference", 6, "first", {}, ""),
+        ("blend", 4, "second", SORTED, ""), ("lucid", 8, "second", {}, "")))
+    assert [comparison.verdict for _, comparison in found.values()] == [
+        "baseline", "slower", "slower", "other run", "other run"]
+    assert [comparison.ratio for _, comparison in found.values()][3:] == [None, None]
 
 
 def test_honest_statistics_do_not_contradict_their_samples():
