@@ -11,12 +11,10 @@ if(OITLAB_SANITIZE)
   target_link_options(oitlab_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# ccache needs to be told that precompiled headers may be trusted.
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER
-      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_SOURCE_DIR}/cmake/compile_cached ${CMAKE_SOURCE_DIR})
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(oitlab_options INTERFACE -fpch-preprocess)
+  target_compile_options(oitlab_options INTERFACE -fpch-preprocess)  # which ccache asks for
 endif()

@@ -8,5 +8,8 @@ add_custom_target(oitlab_commit
   COMMENT "")
 add_dependencies(oitlab_provenance oitlab_commit)
 target_include_directories(oitlab_provenance INTERFACE ${provenance_dir})
-target_compile_definitions(oitlab_provenance INTERFACE
-  OITLAB_SOURCE_DIR="${CMAKE_SOURCE_DIR}" OITLAB_BUILD_TYPE="$<CONFIG>")
+target_compile_definitions(oitlab_provenance INTERFACE OITLAB_BUILD_TYPE="$<CONFIG>")
+# Only for the file that uses it: the path of a clone in every command line would keep ccache from
+# serving one clone with what another compiled.
+set_source_files_properties(harness/util/paths.cpp PROPERTIES
+  COMPILE_DEFINITIONS OITLAB_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
