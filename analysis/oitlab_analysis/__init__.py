@@ -1,7 +1,12 @@
-"""Turns a results folder of oitlab into a table, plots and a report.
+"""Turns cells that `oitlab run` wrote into tables, plots, reports and comparisons.
 
-The modules, in the order in which the data passes through them: `checks`, `packs` and `cells` read
-the files, `statistics` compares the cells of a group, `sections` keeps apart what must not be
-compared, `scatter`, `sweeps` and `bars` draw what `plots` asks for, `table`, `report` and `page`
-write it down. `diff` compares two folders, `paper` sets cells beside published figures.
+Each folder uses those before it, and none after it:
+
+read      files into checked cells
+compare   cells into one tidy table; ratios, verdicts, labels, sections, what changed between two runs
+draw      the charts
+write     reports as a page, Markdown, CSV and text
+paper     the papers' tables and figures, published beside measured
+
+`formats` says how numbers are written; all use it.
 """

@@ -99,7 +99,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
 def run_histogram(source: Path, target: Path) -> int:
     try:
-        from .histogram import BadDepth, draw_histogram
+        from .draw.histogram import BadDepth, draw_histogram
     except ModuleNotFoundError as error:
         print(f"oitlab depth: {sys.executable} has no Python module {error.name}; wanted: matplotlib",
               file=sys.stderr)
@@ -116,14 +116,15 @@ def run_histogram(source: Path, target: Path) -> int:
 
 
 def run_report(options: argparse.Namespace) -> tuple[str, int]:
-    from .report import make_report
+    from .write.report import make_report
 
     result = make_report(options.results, options.out, options.metric, options.all_charts)
     return "\n".join([result.text, *map(str, result.files)]), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 
 def run_diff(options: argparse.Namespace) -> tuple[str, int]:
-    from .diff import diff, markdown, terminal
+    from .compare.diff import diff
+    from .write.diff_text import markdown, terminal
 
     result = diff(options.a, options.b)
     if options.out:
@@ -132,8 +133,8 @@ def run_diff(options: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_paper(options: argparse.Namespace) -> tuple[str, int]:
-    from .paper import make_paper
-    from .sources import BadResults
+    from .paper.make import make_paper
+    from .read.sources import BadResults
 
     if not options.results and not (PAPER / "data").is_dir():
         raise BadResults(f"{PAPER / 'data'} is not there: give results folders, for example: oitlab paper "
@@ -142,8 +143,8 @@ def run_paper(options: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_pack(options: argparse.Namespace) -> tuple[str, int]:
-    from .packs import PACK_SUFFIX, write_pack
-    from .sources import BadResults
+    from .read.packs import PACK_SUFFIX, write_pack
+    from .read.sources import BadResults
 
     if not (options.results / "cells").is_dir():
         raise BadResults(f"{options.results}: not a results folder (it has no folder cells)")
@@ -167,7 +168,7 @@ def main(arguments: list[str] | None = None) -> int:
     name = f"oitlab {options.command}"
     # Late, so that --help does not wait for matplotlib, and works without it.
     try:
-        from .sources import BadResults
+        from .read.sources import BadResults
     except ModuleNotFoundError as error:
         return missing_module(name, error)
     try:

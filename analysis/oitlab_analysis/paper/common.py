@@ -5,15 +5,14 @@ from __future__ import annotations
 import statistics
 from collections.abc import Callable
 
-from .. import clock
-from ..cells import block_count as cell_blocks
-from ..device_notes import note_of
-from ..statistics import FEWEST_BLOCKS
-from ..table import NOTED
+from ..compare import clock
+from ..compare.device_notes import NOTED, note_of
+from ..compare.statistics import FEWEST_BLOCKS
+from ..compare.tidy import block_count
 from .agreement import Pairs
 from .measured import Context, Measurements, choose
 from .published import number
-from .table import SLOW, Column, Number
+from .paired_table import SLOW, Column, Number
 
 
 def short(device: str) -> str:
@@ -40,7 +39,7 @@ def _frame(cell: dict, scale: float) -> Number:
     if not clock.frames_are_slow(cell):
         return Number(scale * frame["median"])
     low, high = frame.get("ci95") or (None, None)
-    if low is None or cell_blocks(cell) < FEWEST_BLOCKS:
+    if low is None or block_count(cell) < FEWEST_BLOCKS:
         return Number(scale * frame["median"], mark=SLOW)
     return Number(scale * frame["median"], scale * low, scale * high, mark=SLOW)
 

@@ -7,7 +7,7 @@ from .common import (build, clock_notes, columns, file_name, frame_us, general_n
                      mean_row, not_in_turn, pairs_of, published, short, size_of, stages_us, without_ratios)
 from .measured import Context, Measurements, Want, find, ratio
 from .published import STAND_INS, read
-from .table import Column, Number, Table
+from .paired_table import Column, Number, Table
 
 # What the paper measured: it leaves wrong pixels as they are.
 LUCID = {"depth_filter": 3, "alpha_threshold": 0, "repair": False, "visualize_errors": False,

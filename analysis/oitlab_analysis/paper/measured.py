@@ -10,10 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..cells import Collection, collect, fingerprint
-from ..report import left_out
-from ..sources import BadResults, sources_in
-from ..statistics import Comparison, compare_cells
+from ..read.cells import Collection, collect, fingerprint, left_out
+from ..read.sources import BadResults, sources_in
+from ..compare.statistics import Comparison, compare_cells
 
 
 @dataclass

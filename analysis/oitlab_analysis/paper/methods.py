@@ -10,7 +10,7 @@ from .common import (build, clock_notes, columns, file_name, general_notes, head
 from .lucidraster import LUCID
 from .measured import Context, Measurements, Want, find, ratio
 from .published import STAND_INS, read
-from .table import Column, Number, Table
+from .paired_table import Column, Number, Table
 
 HW = Want("blend", {"order": "submission"})
 # The rows of the paper that have a method here.

@@ -1,0 +1,117 @@
+"""Short names for methods and settings: only what tells the cells of a section apart.
+
+A setting is what all methods of one comparison share: scene, view, size and format.
+"""
+
+from __future__ import annotations
+
+import pandas
+
+from ..formats import is_number, natural_key, number, parameter
+
+SCENE_KNOBS = ("opacity", "detail", "content_hash")
+
+
+def records(table: pandas.DataFrame) -> list[dict]:
+    """The rows as dictionaries: a pandas row of this many columns is slow to make and to read."""
+    return table.to_dict("records")
+
+
+def is_given(value: object) -> bool:
+    """False for what a flat table holds where a cell had nothing."""
+    return value is not None and not (isinstance(value, float) and value != value)
+
+
+def parameters_of(row: dict) -> dict[str, object]:
+    """All parameters of a cell by name."""
+    prefix = "param."
+    return {
+        name[len(prefix):]: value
+        for name, value in row.items()
+        if name.startswith(prefix) and is_given(value)
+    }
+
+
+def parameter_text(parameters: dict[str, object]) -> str:
+    return ", ".join(f"{name}={parameter(value)}" for name, value in parameters.items())
+
+
+def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
+    """For each method the parameters that have more than one value among its cells."""
+    result = {}
+    for method, cells in table.groupby("method"):
+        names = [name for name in table.columns if name.startswith("param.")]
+        # As text, because 1, 1.0 and True are equal to Python but not to a reader.
+        varying = [name for name in names if cells[name].map(str).nunique(dropna=False) > 1]
+        result[method] = [name[len("param."):] for name in varying]
+    return result
+
+
+def scene_label(row: dict, knobs: list[str]) -> str:
+    """`tree`, or `tree (opacity=0.3)` where the scene was run in more than one way."""
+    parts = []
+    for knob in knobs:
+        value = row[knob]
+        if knob == "content_hash":
+            parts.append(str(value)[:8] if is_given(value) else "content unknown")
+        elif is_number(value):
+            parts.append(f"{knob}={number(value)}")
+        else:
+            parts.append(f"{knob} as modelled" if knob == "opacity" else f"{knob} not given")
+    return f"{row['scene']} ({', '.join(parts)})" if parts else row["scene"]
+
+
+def varying_knobs(table: pandas.DataFrame) -> dict[str, list[str]]:
+    """For each scene name the knobs that differ among its cells.
+
+    A content hash only counts where nothing else explains it: it changes with detail and opacity.
+    Failed cells may lack it.
+    """
+    result = {}
+    for scene, cells in table.groupby("scene"):
+        knobs = [k for k in SCENE_KNOBS[:2] if cells[k].nunique(dropna=False) > 1]
+        if any(
+            same["content_hash"].nunique() > 1
+            for _, same in cells.groupby(["opacity", "detail"], dropna=False)
+        ):
+            knobs.append("content_hash")
+        result[scene] = knobs
+    return result
+
+
+def add_labels(table: pandas.DataFrame) -> pandas.DataFrame:
+    """Adds `label` (method), `scene_label`, `size_label` and `setting`, and sorts by them.
+
+    Within a setting no two cells share a label: what nothing else tells apart gets a number, so
+    that no chart or table can merge two cells.
+    """
+    table = table.copy()
+    varying, knobs = varying_parameters(table), varying_knobs(table)
+    sizes_vary = table[["width", "height"]].drop_duplicates().shape[0] > 1
+    formats_vary, views_vary = table["format"].nunique() > 1, table["view"].nunique() > 1
+    labels, scenes, sizes, settings = [], [], [], []
+    for row in records(table):
+        chosen = {k: v for k, v in parameters_of(row).items() if k in varying[row["method"]]}
+        labels.append(row["method"] + (f" ({parameter_text(chosen)})" if chosen else ""))
+        scene = scene_label(row, knobs[row["scene"]])
+        size = f"{row['width']}×{row['height']}" + (f" {row['format']}" if formats_vary else "")
+        parts = [scene, row["view"] if views_vary else "", size if sizes_vary or formats_vary else ""]
+        scenes.append(scene)
+        sizes.append(size)
+        settings.append(" · ".join(part for part in parts if part))
+    table["label"], table["scene_label"] = labels, scenes
+    table["size_label"], table["setting"] = sizes, settings
+    repeats = table.groupby(["setting", "label"]).cumcount()
+    table["label"] += [f" #{n + 1}" if n else "" for n in repeats]
+    keys = [
+        (
+            natural_key(row["scene_label"]),
+            row["view"],
+            row["width"] * row["height"],
+            row["format"],
+            row["method"] != "blend",  # the usual baseline first
+            natural_key(row["label"]),
+        )
+        for row in records(table)
+    ]
+    return table.iloc[sorted(range(len(keys)), key=keys.__getitem__)].reset_index(drop=True)

@@ -1,0 +1,87 @@
+"""Reads cells and writes report.html, report.md, cells.csv and the charts."""
+
+from __future__ import annotations
+
+import subprocess
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..compare.clock import clock_summary
+from ..compare.sections import add_comparisons, make_sections, mixture_warnings
+from ..compare.tidy import as_table
+from ..draw.charts import save_charts
+from ..read.cells import collect, left_out
+from .contents import Report, command_of, summary
+from .markdown import markdown_report
+from .page import html_page
+from .table import TERMINAL_WIDTH, terminal_table, terminal_warnings
+
+
+@dataclass(frozen=True)
+class Result:
+    """What the command line shows: the table, the files written, whether some cells failed."""
+
+    text: str
+    files: list[Path]
+    failed: bool
+
+
+def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse",
+                all_charts: bool = False) -> Result:
+    """Reads all cells of the paths (see collect()) and writes the report into `out`.
+
+    Without `out` it is written into the results folder, where the paths name exactly one, and
+    nowhere otherwise: packs and folders of packs are somebody's data. Raises BadResults, OSError.
+    """
+    collection = collect(*paths)
+    table = add_comparisons(as_table(collection.cells), collection.cells)
+    sections = make_sections(collection.cells, table)
+    notes = mixture_warnings(table) + left_out(collection.problems)
+    if collection.repeated:
+        notes.append(f"{collection.repeated} cells were given twice, and count once.")
+    folder, command = out or own_folder(paths), command_of(paths, out)
+    charts = [[] for _ in sections]
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
+        charts, missing = save_charts(sections, folder / "plots", metric, all_charts)
+        if missing:
+            notes.append(f"{missing} charts were left out to keep the page short: {command} --all-charts "
+                         "draws them.")
+    report = Report(folder or Path(), collection.sources, sections, charts, table,
+                    clock_summary(list(collection.cells.values())), notes, command)
+    text, files = terminal_text(report), []
+    if folder:
+        files = write_files(report)
+    else:
+        text += "\nNothing was written: --out DIR says where the page, the charts and the CSV go.\n"
+    return Result(text, files, bool((table["status"] == "failed").any()))
+
+
+def write_files(report: Report) -> list[Path]:
+    """Writes the page, the Markdown and the CSV; returns their paths."""
+    files = [report.folder / name for name in ("report.html", "report.md", "cells.csv")]
+    files[0].write_text(html_page(report), encoding="utf-8")
+    files[1].write_text(markdown_report(report), encoding="utf-8")
+    report.table.to_csv(files[2], index=False)
+    return files
+
+
+def own_folder(paths: list[Path]) -> Path | None:
+    """The results folder that the paths name, if they name one and nothing else, and git does not
+    track its cells."""
+    if len(paths) != 1 or not (paths[0] / "cells").is_dir():
+        return None
+    try:
+        tracked = subprocess.run(["git", "ls-files", "cells"], cwd=paths[0], capture_output=True, check=False)
+    except OSError:  # no git: nothing is tracked by it
+        return paths[0]
+    return None if tracked.stdout else paths[0]
+
+
+def terminal_text(report: Report) -> str:
+    blocks = [terminal_table(section) for section in report.sections]
+    blocks.append(terminal_warnings(report.notes) + f"{summary(report.table)}.")
+    if report.clock:
+        blocks[-1] += "\n" + textwrap.fill(report.clock, TERMINAL_WIDTH)
+    return "\n\n".join(blocks) + "\n"

@@ -1,0 +1,160 @@
+"""The main table: what each column says, and its forms for the terminal and for Markdown."""
+
+from __future__ import annotations
+
+import textwrap
+
+import pandas
+
+from .. import formats
+from ..formats import NOTHING
+from ..compare.device_notes import NOTED
+from ..compare.labels import records
+from ..compare.sections import Section
+
+UNSETTLED = ("time_limit", "max_blocks")
+TERMINAL_WIDTH = 100
+
+
+def describe(row: dict) -> dict[str, str]:
+    """The figures of one cell as text, by the names that the tables use."""
+    if row["status"] != "ok":
+        return {"frame": row["status"], "reason": row["reason"].strip() or "no reason given"}
+    frame = formats.with_interval(
+        row["frame_ms.median"], row["frame_ms.ci_low"], row["frame_ms.ci_high"], row["blocks"]
+    )
+    ratio = formats.with_interval(row["ratio"], row["ratio.low"], row["ratio.high"], row["ratio.blocks"])
+    return {
+        "frame": frame + (" †" if row.get("stop.reason") in UNSETTLED else ""),
+        "ratio": "1" if row["verdict"] == "baseline" else ratio + (NOTED if row["device_note"] else ""),
+        "verdict": row["verdict"],
+        "rmse": formats.number(row.get("quality.rmse")),
+        "psnr": formats.decibels(row.get("quality.psnr"), row.get("quality.rmse")),
+        "pixels_off": formats.share(row.get("quality.pixels_off")),
+        "ssim": formats.similarity(row.get("quality.ssim")),
+        "flip": formats.number(row.get("quality.flip")),
+        "fragments": formats.count(row.get("counter.fragments")),
+        "memory": formats.mebibytes(row["memory_total_bytes"]),
+        "per_pixel": formats.number(row.get("bytes_per_pixel")),
+        "per_fragment": formats.number(row.get("bytes_per_fragment")),
+        "reason": "",
+    }
+
+
+def error_caption(row: dict) -> str:
+    """The error of an image in a few words, for its caption."""
+    if not formats.is_number(row.get("quality.rmse")):
+        return "not compared with a reference"
+    texts = describe(row)
+    if row["quality.rmse"] == 0:
+        return "equal to the reference"
+    return f"RMSE {texts['rmse']}, PSNR {texts['psnr']} dB, pixels off: {texts['pixels_off']}"
+
+
+# Column head, name in describe(), width in characters, right-aligned. With two spaces between
+# columns a line has at most 100 characters.
+TERMINAL_COLUMNS = (
+    ("method", "label", 20, False),
+    ("frame ms [95%]", "frame", 25, True),
+    ("ratio [95%]", "ratio", 23, True),
+    ("verdict", "verdict", 9, False),
+    ("RMSE", "rmse", 8, True),
+    ("MiB", "memory", 5, True),
+)
+
+
+def terminal_table(section: Section) -> str:
+    """Aligned text, one block of lines per setting, at most 100 columns wide."""
+    lines = textwrap.wrap(section.title, TERMINAL_WIDTH)
+    lines += terminal_warnings(section.warnings).splitlines()
+    head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
+    for _, cells in section.settings():
+        lines += ["", *textwrap.wrap(setting_heading(cells), TERMINAL_WIDTH), head.rstrip()]
+        for row in records(cells):
+            lines += _terminal_rows(row)
+    return "\n".join(lines)
+
+
+def terminal_warnings(warnings: list[str]) -> str:
+    """Warnings as lines of at most 100 characters, or nothing."""
+    lines = [
+        textwrap.fill(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ",
+                      break_on_hyphens=False)
+        for warning in warnings
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def setting_heading(cells: pandas.DataFrame) -> str:
+    """`boxes · default · 640×360 · 12.0 K triangles`."""
+    first = cells.iloc[0]
+    parts = [first["scene_label"], first["view"], first["size_label"]]
+    triangles = cells["triangles"].max()  # failed cells may not know it
+    if formats.is_number(triangles):
+        parts.append(f"{formats.count(triangles)} triangles")
+    return " · ".join(parts)
+
+
+def _terminal_rows(row: dict) -> list[str]:
+    """One cell; a label that is too long goes on in the next line, nothing is cut off."""
+    texts = describe(row)
+    width = TERMINAL_COLUMNS[0][2]
+    names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
+    if row["status"] != "ok":
+        reason = textwrap.wrap(f"{row['status']}: {texts['reason']}", TERMINAL_WIDTH - width - 2)
+        height = max(len(names), len(reason))
+        names += [""] * (height - len(names))
+        reason += [""] * (height - len(reason))
+        return [f"{n:<{width}}  {r}".rstrip() for n, r in zip(names, reason)]
+    values = [_align(texts[name], w, right) for _, name, w, right in TERMINAL_COLUMNS[1:]]
+    return ["  ".join([f"{names[0]:<{width}}", *values]).rstrip(), *names[1:]]
+
+
+def _align(text: str, width: int, right: bool) -> str:
+    return f"{text:>{width}}" if right else f"{text:<{width}}"
+
+
+MARKDOWN_COLUMNS = (
+    ("scene", "scene_label"),
+    ("view", "view"),
+    ("size", "size_label"),
+    ("method", "label"),
+    ("frame ms [95%]", "frame"),
+    ("ratio [95%]", "ratio"),
+    ("verdict", "verdict"),
+    ("RMSE", "rmse"),
+    ("PSNR dB", "psnr"),
+    ("pixels off", "pixels_off"),
+    ("SSIM", "ssim"),
+    ("FLIP", "flip"),
+    ("fragments", "fragments"),
+    ("memory MiB", "memory"),
+    ("own bytes a pixel", "per_pixel"),
+    ("own bytes a fragment", "per_fragment"),
+)
+
+
+def markdown_text(text: str) -> str:
+    """Text that Markdown shows as it is, also inside a table."""
+    text = text.replace("&", "&amp;").replace("<", "&lt;")
+    for character in "\\`*_[]|#":
+        text = text.replace(character, "\\" + character)
+    return text
+
+
+def markdown_table(section: Section) -> str:
+    """The main table in Markdown, one row per cell."""
+    first_figure = 4
+    rules = ["---" if i < first_figure or head == "verdict" else "---:"
+             for i, (head, _) in enumerate(MARKDOWN_COLUMNS)]
+    lines = [_markdown_row([head for head, _ in MARKDOWN_COLUMNS]), _markdown_row(rules)]
+    for row in records(section.table):
+        texts = describe(row)
+        values = [row[name] for _, name in MARKDOWN_COLUMNS[:first_figure]]
+        values += [texts.get(name, NOTHING) for _, name in MARKDOWN_COLUMNS[first_figure:]]
+        lines.append(_markdown_row([markdown_text(value) for value in values]))
+    return "\n".join(lines)
+
+
+def _markdown_row(values: list[str]) -> str:
+    return f"| {' | '.join(values)} |"
