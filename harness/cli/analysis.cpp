@@ -13,7 +13,7 @@ struct AnalysisVerb {
 };
 
 constexpr AnalysisVerb analysisVerbs[] = {
-    {"report", "Table, plots, HTML and Markdown of a results folder"},
+    {"report", "Table, plots, HTML and Markdown of results folders and packs"},
     {"diff", "What became faster, slower or different from one results folder to another"},
     {"paper", "The papers' tables and figures, published beside measured"},
     {"pack", "The raw cells of a results folder as one small file"},

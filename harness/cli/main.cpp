@@ -2,6 +2,7 @@
 #include "experiment/describe.h"
 #include "util/error.h"
 #include "util/suggest.h"
+#include "util/version.h"
 
 namespace oitlab {
 namespace {
@@ -28,6 +29,7 @@ int runProgram(int argc, char** argv) {
       "oitlab compares order-independent-transparency methods: the same scenes, shading and clock.",
       "oitlab");
   program.require_subcommand(1);
+  program.set_version_flag("--version", versionLine(), "Version, commit, build type");
   program.set_help_all_flag("--help-all", "Help for every verb");
   program.footer(
       "Examples:\n"
@@ -48,7 +50,7 @@ int runProgram(int argc, char** argv) {
     program.parse(argc, argv);
     return action();
   } catch (const CLI::Success& help) {
-    return program.exit(help);  // --help
+    return program.exit(help);  // --help, --version
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "oitlab: {}; see `oitlab{}{} --help`\n", explain(program, error),
                program.get_subcommands().empty() ? "" : " ",

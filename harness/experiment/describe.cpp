@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-#include "commit.h"
+#include "util/version.h"
 
 namespace oitlab {
 namespace {
@@ -81,9 +81,8 @@ nlohmann::json describeProvenance(const Device& device, const std::string& metho
   nlohmann::json shaders = nlohmann::json::object();
   for (const auto& [path, hash] : device.shaders().hashes())
     if (path.starts_with("common/") || path.starts_with(method + "/")) shaders[path] = hash;
-  return {
-      {"commit", OITLAB_COMMIT},  {"build", OITLAB_BUILD_TYPE}, {"validation", device.validation()},
-      {"command", commandLine()}, {"date", utcNow()},           {"shaders", shaders}};
+  return {{"commit", builtCommit()},  {"build", buildType()}, {"validation", device.validation()},
+          {"command", commandLine()}, {"date", utcNow()},     {"shaders", shaders}};
 }
 
 nlohmann::json describeMethod(const MethodInfo& info) {

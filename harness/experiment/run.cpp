@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include "commit.h"
 #include "experiment/describe.h"
 #include "experiment/last_scene.h"
 #include "image/hash.h"
@@ -11,6 +10,7 @@
 #include "util/error.h"
 #include "util/json_file.h"
 #include "util/progress.h"
+#include "util/version.h"
 
 namespace oitlab {
 namespace {
@@ -283,7 +283,7 @@ RunSummary runExperiment(const Device& device, const Experiment& experiment,
         const json content = readJsonFile(path);
         present = content.value("status", "") != "failed";
         const std::string commit = content.at("provenance").value("commit", "");
-        if (present && commit != OITLAB_COMMIT) ++before.otherVersion;
+        if (present && commit != builtCommit()) ++before.otherVersion;
       } catch (const std::exception& error) {
         fmt::print(stderr, "{}: measured again: {}\n", path.string(), error.what());
       }

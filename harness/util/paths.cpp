@@ -14,7 +14,7 @@ std::filesystem::path dataRoot() {
       fail<InputError>("OITLAB_ROOT is '{}', expected a folder that exists", root);
     return root;
   }
-  if (const fs::path source = OITLAB_SOURCE_DIR; fs::is_directory(source, ignored)) return source;
+  if (fs::path source = OITLAB_SOURCE_DIR; fs::is_directory(source, ignored)) return source;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   return ignored ? fs::current_path() : program.parent_path();
 }
@@ -25,8 +25,8 @@ std::filesystem::path cacheRoot() {
     const char* value = std::getenv(name);
     return value ? value : "";
   };
-  if (const fs::path own = variable("OITLAB_CACHE"); !own.empty()) return own;
-  if (const fs::path xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg / "oitlab";
+  if (fs::path own = variable("OITLAB_CACHE"); !own.empty()) return own;
+  if (fs::path xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg / "oitlab";
   if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "oitlab";
   std::error_code ignored;
   return fs::temp_directory_path(ignored) / "oitlab";
