@@ -133,7 +133,7 @@ def draw():
     # 1: the bin
     svg.head(20, 30, 1, "A bin and its triangles")
     left, top, unit = 20, 46, 10
-    for name, (corners, grey) in TRIANGLES.items():
+    for corners, grey in TRIANGLES.values():
         svg.polygon([(left + unit * x, top + unit * y) for x, y, _ in corners], tone(grey))
     for i in range(BIN + 1):
         strong = i % WIDTH == 0
@@ -185,7 +185,8 @@ def draw():
             svg.rect(x, y, w, 22)
             svg.text(x + w / 2, y + 16, words, "middle", 12)
             x += w
-    svg.lines(776, 376, ["By one lane each, as", "planes that start at the", "half-block's corner,", "then read by all lanes."])
+    svg.lines(776, 376, ["By one lane each, as", "planes that start at the", "half-block's corner,",
+                         "then read by all lanes."])
 
     # 5: fragments
     svg.head(20, 500, 5, "Fragments: a lane a pixel")
