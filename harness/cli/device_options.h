@@ -6,7 +6,7 @@
 
 namespace oitlab {
 
-/// --device and --validation, alike for every verb that opens a device.
+/// --device, --validation and --shader-printf, alike for every verb that opens a device.
 inline void addDeviceOptions(CLI::App& verb, Device::Options& options) {
   verb.add_option("--device", options.index,
                   "Device number as `oitlab info` lists them (default: a GPU if there is one)")
@@ -14,6 +14,8 @@ inline void addDeviceOptions(CLI::App& verb, Device::Options& options) {
       ->type_name("N");
   verb.add_flag("--validation", options.validation,
                 "Vulkan validation layers, synchronization included (slow; marked in results)");
+  verb.add_flag("--shader-printf", options.shaderPrintf,
+                "Print what shaders say with debugPrintfEXT, through the validation layer");
 }
 
 }  // namespace oitlab

@@ -9,6 +9,7 @@
 
 #include "frame/gpu_scene.h"
 #include "frame/target.h"
+#include "gpu/debug_names.h"
 
 namespace oitlab {
 
@@ -72,10 +73,11 @@ struct Frame {
     if (fillTarget) fillTarget(part);
   }
 
-  /// Brackets a stage: a row in the results. Outside instrumented frames nothing is recorded, since
-  /// the barriers that part stages change what they time.
+  /// Brackets a stage: a row in the results, and a label in a capture. Outside instrumented frames
+  /// no timestamps are recorded, since they change what they time.
   template <typename Record>
   void stage(const std::string& name, Record&& record) const {
+    const DebugLabel label(device, commands, name);
     if (instrumented) timer.beginStage(commands, name);
     record();
     if (instrumented) timer.endStage(commands);

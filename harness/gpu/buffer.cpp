@@ -1,5 +1,6 @@
 #include "gpu/buffer.h"
 
+#include "gpu/debug_names.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -50,6 +51,7 @@ Buffer::Buffer(const Device& device, MemoryLedger& ledger, std::string name, std
                       double(bytes) / (1 << 20), error.what());
   }
   buffer_.bindMemory(*memory_, 0);
+  nameObject(device, *buffer_, name_);
   address_ = device.vk().getBufferAddress({*buffer_});
   if (kind != BufferKind::device) mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
   ledger_ = &ledger;

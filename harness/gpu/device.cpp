@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "gpu/device_info.h"
+#include "gpu/pipeline_cache.h"
 #include "gpu/pipeline_statistics.h"
 #include "gpu/shader.h"
 #include "util/error.h"
@@ -10,91 +11,28 @@
 namespace oitlab {
 namespace {
 
-constexpr const char* validationLayer = "VK_LAYER_KHRONOS_validation";
-
-vk::raii::Context openLoader() {
-  try {
-    return vk::raii::Context();
-  } catch (const std::exception&) {
-    throw DeviceError(
-        "no Vulkan loader (libvulkan.so.1) on this machine; install the package libvulkan1 and a "
-        "driver (mesa-vulkan-drivers runs on any CPU)");
-  }
-}
-
-bool hasLayer(const vk::raii::Context& context, const char* name) {
-  for (const auto& layer : context.enumerateInstanceLayerProperties())
-    if (std::string_view(layer.layerName.data()) == name) return true;
-  return false;
-}
-
-vk::raii::Instance openInstance(const vk::raii::Context& context, bool validation) {
-  if (context.enumerateInstanceVersion() < VK_API_VERSION_1_3)
-    throw DeviceError("the Vulkan loader is older than 1.3; update the package libvulkan1");
-  if (validation && !hasLayer(context, validationLayer))
-    throw DeviceError(
-        "validation was asked for, but the layer VK_LAYER_KHRONOS_validation is not installed "
-        "(package vulkan-validationlayers)");
-
-  const vk::ApplicationInfo application("oitlab", 1, "oitlab", 1, VK_API_VERSION_1_3);
-  std::vector<const char*> layers, extensions;
-  const vk::ValidationFeatureEnableEXT enable =
-      vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
-  const vk::ValidationFeaturesEXT features(enable);
-  vk::InstanceCreateInfo info({}, &application, layers, extensions);
-  if (validation) {
-    layers.push_back(validationLayer);
-    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
-    info.setPNext(&features);
-  }
-  info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
-  try {
-    return vk::raii::Instance(context, info);
-  } catch (const vk::SystemError& error) {
-    fail<DeviceError>(
-        "no Vulkan instance: {}; is a driver installed (mesa-vulkan-drivers runs on "
-        "any CPU)?",
-        error.what());
-  }
-}
-
-std::vector<vk::raii::PhysicalDevice> physicalDevices(const vk::raii::Instance& instance) {
-  try {
-    return instance.enumeratePhysicalDevices();
-  } catch (const vk::SystemError& error) {
-    fail<DeviceError>("the Vulkan driver does not answer: {}", error.what());
-  }
-}
-
 std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+bool wantsDebugNames() {
+  return std::getenv("OITLAB_DEBUG_NAMES") != nullptr;
+}
+
+/// Capture tools announce themselves, and what they do with names.
+bool hasToolForNames(const vk::raii::PhysicalDevice& physical) {
+  const auto tools = physical.getToolProperties();
+  return std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
+    return bool(tool.purposes & vk::ToolPurposeFlagBits::eDebugMarkersEXT);
+  });
+}
+
 }  // namespace
 
-struct Device::MessageLog {
-  mutable std::mutex mutex;
-  std::vector<std::string> messages;
-
-  static VKAPI_ATTR VkBool32 VKAPI_CALL receive(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                                                VkDebugUtilsMessageTypeFlagsEXT,
-                                                const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                                void* user) {
-    auto* log = static_cast<MessageLog*>(user);
-    std::lock_guard lock(log->mutex);
-    log->messages.emplace_back(data->pMessage);
-    fmt::print(stderr, "validation: {}\n", data->pMessage);
-    return VK_FALSE;
-  }
-};
-
 std::vector<DeviceInfo> Device::listDevices() {
-  const vk::raii::Context context = openLoader();
-  const vk::raii::Instance instance = openInstance(context, false);
+  const Instance instance({});
   std::vector<DeviceInfo> devices;
-  for (const auto& physical : physicalDevices(instance))
-    devices.push_back(describeDevice(physical));
+  for (const auto& physical : instance.devices()) devices.push_back(describeDevice(physical));
   return devices;
 }
 
@@ -120,29 +58,26 @@ int Device::bestDevice(const std::vector<DeviceInfo>& devices) {
 }
 
 Device::Device(const Options& options)
-    : validation_(options.validation),
-      log_(std::make_unique<MessageLog>()),
-      context_(openLoader()),
-      instance_(openInstance(context_, options.validation)) {
-  if (validation_) {
-    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    vk::DebugUtilsMessengerCreateInfoEXT info;
-    info.messageSeverity = Severity::eWarning | Severity::eError;
-    info.messageType = Type::eGeneral | Type::eValidation | Type::ePerformance;
-    info.pfnUserCallback = reinterpret_cast<decltype(info.pfnUserCallback)>(&MessageLog::receive);
-    info.pUserData = log_.get();
-    messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, info);
-  }
+    : instance_({.validation = options.validation, .shaderPrintf = options.shaderPrintf}),
+      validation_(options.validation || options.shaderPrintf) {
+  choosePhysicalDevice(options.index);
+  chooseQueueFamily();
+  openDevice();
+  makeLayouts();
+  shaders_ = std::make_unique<ShaderLibrary>(options.shaderPrintf);
+  pipelines_ = std::make_unique<PipelineCache>();
+  showsNames_ =
+      instance_.hasDebugUtils() && (validation_ || wantsDebugNames() || hasToolForNames(physical_));
+}
 
-  auto physicals = physicalDevices(instance_);
+void Device::choosePhysicalDevice(int index) {
+  auto physicals = instance_.devices();
   std::vector<DeviceInfo> devices;
   for (const auto& physical : physicals) devices.push_back(describeDevice(physical));
   if (devices.empty())
     throw DeviceError(
         "no Vulkan device on this machine; install a driver (the package mesa-vulkan-drivers runs "
         "on any CPU)");
-  int index = options.index;
   if (index >= int(devices.size()))
     fail<DeviceError>("there is no device {}: `oitlab info` lists 0 to {}", index,
                       devices.size() - 1);
@@ -158,7 +93,9 @@ Device::Device(const Options& options)
     fail<DeviceError>("device {} ({}) lacks {}", index, info_.name, joined(missing));
   physical_ = std::move(physicals[std::size_t(index)]);
   memory_ = physical_.getMemoryProperties();
+}
 
+void Device::chooseQueueFamily() {
   const auto families = physical_.getQueueFamilyProperties();
   queueFamily_ = std::uint32_t(families.size());
   for (std::uint32_t i = 0; i < families.size(); ++i) {
@@ -170,7 +107,9 @@ Device::Device(const Options& options)
   }
   if (queueFamily_ == families.size())
     fail<DeviceError>("{} has no queue for both graphics and compute", info_.name);
+}
 
+void Device::openDevice() {
   FeatureChain available = queryFeatures(physical_);
   FeatureChain enabled;
   const auto from = namedFeatures(available);
@@ -208,7 +147,9 @@ Device::Device(const Options& options)
   queue_ = vk::raii::Queue(device_, queueFamily_, 0);
   commandPool_ = vk::raii::CommandPool(
       device_, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queueFamily_});
+}
 
+void Device::makeLayouts() {
   using Type = vk::DescriptorType;
   const auto all = vk::ShaderStageFlagBits::eAll;
   const std::array bindings = {
@@ -223,7 +164,6 @@ Device::Device(const Options& options)
   const vk::PushConstantRange push(all, 0, pushConstantBytes);
   pipelineLayout_ =
       vk::raii::PipelineLayout(device_, vk::PipelineLayoutCreateInfo({}, *setLayout_, push));
-  shaders_ = std::make_unique<ShaderLibrary>();
 }
 
 Device::~Device() {
@@ -233,11 +173,6 @@ Device::~Device() {
     if (*device_) device_.waitIdle();
   } catch (const vk::SystemError&) {
   }
-}
-
-std::vector<std::string> Device::validationMessages() const {
-  std::lock_guard lock(log_->mutex);
-  return log_->messages;
 }
 
 std::uint32_t Device::memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,

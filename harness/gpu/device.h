@@ -1,16 +1,19 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include <vulkan/vulkan_raii.hpp>
 
+#include "gpu/instance.h"
+
 namespace oitlab {
 
+class PipelineCache;
 class ShaderLibrary;
 
 /// A command buffer that brings its own function table, so that the program runs (and explains
@@ -48,8 +51,9 @@ struct DeviceInfo {
 class Device {
  public:
   struct Options {
-    int index = -1;           ///< as listed by listDevices(); -1 = the best one
-    bool validation = false;  ///< validation layers with synchronization validation
+    int index = -1;             ///< as listed by listDevices(); -1 = the best one
+    bool validation = false;    ///< validation layers with synchronization validation
+    bool shaderPrintf = false;  ///< shaders may print (ShaderLibrary); needs the validation layer
   };
 
   /// Opens a device. Throws DeviceError when there is no Vulkan loader, no device, no such index,
@@ -74,11 +78,15 @@ class Device {
   const vk::raii::Device& vk() const { return device_; }
   ShaderLibrary& shaders() const { return *shaders_; }
 
-  /// Pipelines made so far, by all that goes into them. A method that is prepared for one scene
-  /// after another has its shaders compiled by the driver once: Pipeline looks here first.
-  std::map<std::string, vk::raii::Pipeline>& pipelines() const { return pipelines_; }
+  /// The pipelines made so far: Pipeline looks here first.
+  PipelineCache& pipelines() const { return *pipelines_; }
 
+  /// The validation layer is there: times are not to be trusted.
   bool validation() const { return validation_; }
+  /// Objects and stages are given their names (gpu/debug_names.h): under validation, where a tool
+  /// says that it shows them (vkGetPhysicalDeviceToolProperties), or where the environment variable
+  /// OITLAB_DEBUG_NAMES is set.
+  bool showsNames() const { return showsNames_; }
   /// Asked for (gpu/pipeline_statistics.h) and supported.
   bool hasPipelineStatistics() const { return pipelineStatistics_; }
   /// VK_KHR_shader_subgroup_uniform_control_flow is enabled: shaders may ask that the lanes of a
@@ -86,7 +94,7 @@ class Device {
   bool hasSubgroupUniformControlFlow() const { return subgroupUniformControlFlow_; }
 
   /// Messages of the validation layers so far (warnings and errors). A clean run has none.
-  std::vector<std::string> validationMessages() const;
+  std::vector<std::string> validationMessages() const { return instance_.validationMessages(); }
 
   /// Whether there is memory that is the device's own and mapped by the CPU.
   bool canMapItsMemory() const;
@@ -124,15 +132,15 @@ class Device {
   static constexpr std::uint32_t pushConstantBytes = 128;
 
  private:
-  struct MessageLog;
+  void choosePhysicalDevice(int index);
+  void chooseQueueFamily();
+  void openDevice();
+  void makeLayouts();
 
+  Instance instance_;
   DeviceInfo info_;
+  bool validation_ = false, showsNames_ = false;
   bool pipelineStatistics_ = false, subgroupUniformControlFlow_ = false;
-  bool validation_ = false;
-  std::unique_ptr<MessageLog> log_;
-  vk::raii::Context context_;
-  vk::raii::Instance instance_ = nullptr;
-  vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
   vk::raii::PhysicalDevice physical_ = nullptr;
   vk::PhysicalDeviceMemoryProperties memory_;
   std::uint32_t queueFamily_ = 0;
@@ -142,7 +150,7 @@ class Device {
   vk::raii::DescriptorSetLayout setLayout_ = nullptr;
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
   std::unique_ptr<ShaderLibrary> shaders_;
-  mutable std::map<std::string, vk::raii::Pipeline> pipelines_;
+  std::unique_ptr<PipelineCache> pipelines_;
 };
 
 }  // namespace oitlab

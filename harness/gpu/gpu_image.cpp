@@ -1,5 +1,6 @@
 #include "gpu/gpu_image.h"
 
+#include "gpu/debug_names.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -29,6 +30,8 @@ GpuImage::GpuImage(const Device& device, MemoryLedger& ledger, const Description
   view_ = vk::raii::ImageView(
       device.vk(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, description.format,
                                            {}, {description.aspect, 0, description.levels, 0, 1}));
+  nameObject(device, *image_, description_.name);
+  nameObject(device, *view_, description_.name);
   ledger_ = &ledger;
   bytes_ = bytes;
   ledger_->add(description_.name, bytes_);

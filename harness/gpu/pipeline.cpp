@@ -1,9 +1,8 @@
 #include "gpu/pipeline.h"
 
-#include <span>
-
+#include "gpu/debug_names.h"
+#include "gpu/pipeline_cache.h"
 #include "gpu/pipeline_statistics.h"
-#include "image/hash.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -15,38 +14,13 @@ vk::raii::ShaderModule makeModule(const Device& device, const Words& words) {
   return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
 }
 
-/// All that goes into a pipeline, byte by byte.
-class Key {
- public:
-  template <typename T>
-  Key& add(const T& value) {
-    static_assert(std::has_unique_object_representations_v<T>);
-    return append(std::as_bytes(std::span(&value, 1)));
-  }
-  template <typename T>
-  Key& add(const std::vector<T>& values) {
-    static_assert(std::has_unique_object_representations_v<T>);
-    add(values.size());
-    return append(std::as_bytes(std::span(values)));
-  }
-  std::string hash() const { return imageHash(std::as_bytes(std::span(text_))); }
-
- private:
-  Key& append(std::span<const std::byte> bytes) {
-    text_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return *this;
-  }
-  std::string text_;
-};
-
-/// The device's pipeline of this key; `make` makes it where there is none yet.
-template <typename Make>
-vk::Pipeline findOrMake(const Device& device, const Key& key, Make&& make) {
-  auto& pipelines = device.pipelines();
-  const std::string hash = key.hash();
-  auto found = pipelines.find(hash);
-  if (found == pipelines.end()) found = pipelines.emplace(hash, make()).first;
-  return *found->second;
+/// As it is called in messages and by tools: "wboit/accumulate.frag WEIGHT=7".
+std::string labelOf(const std::string& path, const Defines& defines, const Constants& constants) {
+  std::string label = path;
+  for (const auto& [name, value] : defines) label += fmt::format(" {}={}", name, value);
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    label += fmt::format(" constant {}={}", i, constants[i]);
+  return label;
 }
 
 vk::raii::Pipeline makeCompute(const Device& device, const Words& words, const Constants& constants,
@@ -154,9 +128,11 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eCompute;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = findOrMake(device, Key().add(words).add(constants).add(subgroupSize), [&] {
+  const auto key = PipelineKey().add(words).add(constants).add(subgroupSize);
+  pipeline.pipeline_ = device.pipelines().findOrMake(key, [&] {
     try {
       auto made = makeCompute(device, words, constants, subgroupSize);
+      nameObject(device, *made, labelOf(path, defines, constants));
       printPipelineStatistics(device, *made, path);
       return made;
     } catch (const vk::SystemError& error) {
@@ -170,7 +146,7 @@ Pipeline Pipeline::compute(const Device& device, const std::string& path, const 
 Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   const Words vertex = device.shaders().compile(description.vertexShader, description.defines);
   const Words fragment = device.shaders().compile(description.fragmentShader, description.defines);
-  const auto key = Key()
+  const auto key = PipelineKey()
                        .add(vertex)
                        .add(fragment)
                        .add(description.colorFormats)
@@ -184,9 +160,11 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   Pipeline pipeline;
   pipeline.bindPoint_ = vk::PipelineBindPoint::eGraphics;
   pipeline.layout_ = device.pipelineLayout();
-  pipeline.pipeline_ = findOrMake(device, key, [&] {
+  pipeline.pipeline_ = device.pipelines().findOrMake(key, [&] {
     try {
-      return makeGraphics(device, vertex, fragment, description);
+      auto made = makeGraphics(device, vertex, fragment, description);
+      nameObject(device, *made, labelOf(description.fragmentShader, description.defines, {}));
+      return made;
     } catch (const vk::SystemError& error) {
       throw DeviceError(pipelineRefusal(
           device.info().name, {description.vertexShader, description.fragmentShader},

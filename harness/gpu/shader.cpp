@@ -1,9 +1,6 @@
 #include "gpu/shader.h"
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
+#include <cstring>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -13,6 +10,7 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include "image/hash.h"
+#include "util/cache_file.h"
 #include "util/error.h"
 #include "util/paths.h"
 #include "util/text_file.h"
@@ -35,6 +33,11 @@ constexpr const char* preamble = R"(
 #extension GL_KHR_shader_subgroup_ballot : enable
 #extension GL_KHR_shader_subgroup_arithmetic : enable
 #extension GL_KHR_shader_subgroup_shuffle : enable
+)";
+
+constexpr const char* printfPreamble = R"(
+#extension GL_EXT_debug_printf : require
+#define SHADER_PRINTF 1
 )";
 
 /// Resolves #include "x" against the folder of the including file, then against shaders/.
@@ -92,36 +95,12 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
   }
 }
 
-std::vector<std::uint32_t> readWords(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return {};
-  std::vector<std::uint32_t> words(std::size_t(file.tellg()) / 4);
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(words.data()), std::streamsize(words.size() * 4));
-  constexpr std::uint32_t spirvMagic = 0x07230203;
-  if (!file || words.size() < 5 || words[0] != spirvMagic) return {};
-  return words;
-}
-
-/// Several processes may share the cache, so a file appears whole or not at all. The cache is a
-/// convenience: failing to write it is not an error.
-void writeWords(const std::filesystem::path& path, const std::vector<std::uint32_t>& words) {
-  std::error_code ignored;
-  std::filesystem::create_directories(path.parent_path(), ignored);
-  const auto temporary = path.string() + fmt::format(".{}.tmp", getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * 4));
-    if (!file) return;
-  }
-  std::filesystem::rename(temporary, path, ignored);
-}
-
 }  // namespace
 
-ShaderLibrary::ShaderLibrary()
+ShaderLibrary::ShaderLibrary(bool shaderPrintf)
     : root_(std::filesystem::weakly_canonical(dataRoot() / "shaders")),
-      cache_(cacheRoot() / "spirv") {
+      cache_(cacheRoot() / "spirv"),
+      preamble_(shaderPrintf ? std::string(preamble) + printfPreamble : preamble) {
   if (!std::filesystem::exists(root_))
     fail<InputError>("{}: no such folder; set OITLAB_ROOT to the folder that holds shaders/",
                      root_.string());
@@ -131,7 +110,7 @@ std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const
   std::string definitions;
   for (const auto& [name, value] : defines)
     definitions += fmt::format("#define {} {}\n", name, value);
-  std::string everything = path + "\n" + preamble + definitions;
+  std::string everything = path + "\n" + preamble_ + definitions;
   const auto version = glslang::GetVersion();
   everything += fmt::format("glslang {}.{}.{}\n", version.major, version.minor, version.patch);
   std::set<std::string> seen;
@@ -142,13 +121,24 @@ std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const
   hashes_[label] = hash;
 
   const auto cached = cache_ / (hash + ".spv");
-  if (auto words = readWords(cached); !words.empty()) return words;
+  if (const auto bytes = readCached(cached, hash); bytes && bytes->size() % 4 == 0) {
+    std::vector<std::uint32_t> words(bytes->size() / 4);
+    std::memcpy(words.data(), bytes->data(), bytes->size());
+    return words;
+  }
+  std::vector<std::uint32_t> words = compileAnew(path, preamble_ + definitions, label);
+  writeCached(cached, hash,
+              {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
+  return words;
+}
 
+std::vector<std::uint32_t> ShaderLibrary::compileAnew(const std::string& path,
+                                                      const std::string& head,
+                                                      const std::string& label) const {
   static std::once_flag once;
   std::call_once(once, [] { glslang::InitializeProcess(); });
   const EShLanguage stage = stageOf(path);
   const std::string text = readTextFile(root_ / path);
-  const std::string head = preamble + definitions;
   glslang::TShader shader(stage);
   const char* source = text.c_str();
   const char* name = path.c_str();
@@ -170,7 +160,6 @@ std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const
   if (!good) fail<InputError>("shaders/{} does not compile:\n{}", label, log);
   std::vector<std::uint32_t> words;
   glslang::GlslangToSpv(*program.getIntermediate(stage), words);
-  writeWords(cached, words);
   return words;
 }
 

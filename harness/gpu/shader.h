@@ -13,10 +13,13 @@ using Defines = std::map<std::string, std::string>;
 
 /// Compiles GLSL to SPIR-V when a pipeline is made, so that editing a shader needs no rebuild. The
 /// result is cached on disk by the hash of everything that goes into it: the text, what it
-/// includes, the definitions and the compiler's version.
+/// includes, the definitions and the compiler's version. A damaged file of the cache is replaced
+/// (util/cache_file.h).
 class ShaderLibrary {
  public:
-  ShaderLibrary();
+  /// `shaderPrintf`: shaders may call debugPrintfEXT, and SHADER_PRINTF is defined. Throws
+  /// InputError when the folder shaders/ is missing.
+  explicit ShaderLibrary(bool shaderPrintf = false);
 
   /// `path` is relative to the folder shaders/, its extension names the stage (.vert .frag .comp).
   /// Throws InputError with file, line and the compiler's message when the text does not compile.
@@ -26,8 +29,13 @@ class ShaderLibrary {
   const std::map<std::string, std::string>& hashes() const { return hashes_; }
 
  private:
+  /// `head` precedes the text; `label` names the variant in messages.
+  std::vector<std::uint32_t> compileAnew(const std::string& path, const std::string& head,
+                                         const std::string& label) const;
+
   std::filesystem::path root_;
   std::filesystem::path cache_;
+  std::string preamble_;
   std::map<std::string, std::string> hashes_;
 };
 

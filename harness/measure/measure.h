@@ -4,6 +4,7 @@
 
 #include "measure/clock_watch.h"
 #include "measure/statistics.h"
+#include "measure/stop_rule.h"
 #include "render/renderer.h"
 
 namespace oitlab {

@@ -1,3 +1,5 @@
+#include "measure/stop_rule.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
