@@ -69,7 +69,7 @@ int render(const RenderOptions& options) {
   const Target target(device, size->first, size->second, format);
   const GpuScene gpuScene(device, scene, options.shuffle);
   Renderer renderer(device, gpuScene, target);
-  const auto method = renderer.prepare(info, parameters);
+  const auto method = renderer.make(info, parameters);
 
   const double frameMs = quickFrameTime(renderer, *method, camera);
   const auto bytes = target.readBytes(device);

@@ -188,7 +188,7 @@ std::optional<Image> Run::renderReference(Renderer& renderer, const Camera& came
   if (experiment_.reference.empty()) return std::nullopt;
   const MethodInfo& info = findMethod(experiment_.reference);
   try {
-    const auto method = renderer.prepare(info, Parameters(info.parameters, {}, info.name));
+    const auto method = renderer.make(info, Parameters(info.parameters, {}, info.name));
     renderer.render(*method, camera);
     return renderer.target().toImage(renderer.target().readBytes(device_));
   } catch (const DeviceError& error) {
@@ -217,7 +217,7 @@ void Run::measureOn(const std::vector<CellSpec>& cells) {
       continue;
     }
     try {
-      owned.push_back(renderer.prepare(info, cell.parameters));
+      owned.push_back(renderer.make(info, cell.parameters));
       prepared.push_back(owned.back().get());
       ready.push_back(cell);
     } catch (const DeviceError& error) {

@@ -3,6 +3,7 @@
 #include "gpu/barrier.h"
 
 #include "util/check.h"
+#include "util/rounding.h"
 
 namespace oitlab {
 namespace {
@@ -130,7 +131,7 @@ void Frame::drawTransparent() const {
 }
 
 void Frame::dispatchPixels() const {
-  commands.dispatch((target.width() + 7) / 8, (target.height() + 7) / 8, 1);
+  commands.dispatch(divideUp(target.width(), 8u), divideUp(target.height(), 8u), 1);
 }
 
 }  // namespace oitlab

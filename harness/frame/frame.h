@@ -10,6 +10,7 @@
 #include "frame/gpu_scene.h"
 #include "frame/target.h"
 #include "gpu/debug_names.h"
+#include "gpu/pipeline.h"
 
 namespace oitlab {
 
@@ -81,6 +82,13 @@ struct Frame {
     if (instrumented) timer.beginStage(commands, name);
     record();
     if (instrumented) timer.endStage(commands);
+  }
+
+  /// Binds a pipeline with the images of the frame, and with push constants where it has them.
+  void bind(const Pipeline& pipeline) const { pipeline.bind(commands, bindings); }
+  template <typename Push>
+  void bind(const Pipeline& pipeline, const Push& push) const {
+    pipeline.bind(commands, bindings, push);
   }
 
   /// Makes all writes before it visible to everything after it within `from` -> `to`.

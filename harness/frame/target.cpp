@@ -67,7 +67,7 @@ Target::Target(const Device& device, std::uint32_t width, std::uint32_t height, 
 
 std::vector<std::byte> Target::readBytes(const Device& device) const {
   MemoryLedger unlisted;
-  const std::uint64_t bytes = std::uint64_t(width()) * height() * entryOf(format_).bytesPerPixel;
+  const std::uint64_t bytes = pixels() * entryOf(format_).bytesPerPixel;
   const Buffer buffer(device, unlisted, "image readback", bytes, BufferKind::readback);
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;
@@ -95,7 +95,7 @@ Image Target::toImage(std::span<const std::byte> bytes) const {
   Image image;
   image.width = int(width());
   image.height = int(height());
-  image.rgba.resize(std::size_t(width()) * height() * 4);
+  image.rgba.resize(pixels() * 4);
   for (std::size_t i = 0; i < image.rgba.size(); ++i) {
     switch (format_) {
       case TargetFormat::rgba16f: {

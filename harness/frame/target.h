@@ -30,6 +30,7 @@ class Target {
 
   std::uint32_t width() const { return color_.description().width; }
   std::uint32_t height() const { return color_.description().height; }
+  std::uint64_t pixels() const { return std::uint64_t(width()) * height(); }
   vk::Rect2D area() const { return {{0, 0}, color_.extent()}; }
   TargetFormat format() const { return format_; }
   const GpuImage& color() const { return color_; }

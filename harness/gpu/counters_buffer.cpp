@@ -10,17 +10,17 @@ CountersBuffer::CountersBuffer(const Device& device, MemoryLedger& ledger, const
   if (!mapped) readback_ = Buffer(device, ledger, name + " readback", bytes, BufferKind::readback);
 }
 
-void recordReadback(const Commands& commands,
-                    std::initializer_list<const CountersBuffer*> counters) {
+void recordReadback(const Commands& commands, std::initializer_list<const CountersBuffer*> counters,
+                    vk::PipelineStageFlags2 from) {
   using Stage = vk::PipelineStageFlagBits2;
   bool copied = false;
   for (const CountersBuffer* c : counters) {
     if (!c->readback_) continue;
-    if (!copied) memoryBarrier(commands, Stage::eComputeShader, Stage::eTransfer);
+    if (!copied) memoryBarrier(commands, from, Stage::eTransfer);
     copied = true;
     commands.copyBuffer(c->vk(), c->readback_.vk(), vk::BufferCopy(0, 0, c->counters_.bytes()));
   }
-  memoryBarrier(commands, copied ? Stage::eTransfer : Stage::eComputeShader, Stage::eHost);
+  memoryBarrier(commands, copied ? vk::PipelineStageFlags2(Stage::eTransfer) : from, Stage::eHost);
 }
 
 }  // namespace oitlab

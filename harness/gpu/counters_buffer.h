@@ -25,20 +25,26 @@ class CountersBuffer {
   std::uint64_t address() const { return counters_.address(); }
   vk::Buffer vk() const { return counters_.vk(); }
 
-  /// After the frame whose end has recordReadback().
+  /// After the frame whose end has recordReadback(): all of it, and the first.
+  template <typename T>
+  std::span<const T> readAll() const {
+    return (readback_ ? readback_ : counters_).mapped<T>();
+  }
   template <typename T>
   const T& read() const {
-    return (readback_ ? readback_ : counters_).mapped<T>()[0];
+    return readAll<T>()[0];
   }
 
  private:
-  friend void recordReadback(const Commands&, std::initializer_list<const CountersBuffer*>);
+  friend void recordReadback(const Commands&, std::initializer_list<const CountersBuffer*>,
+                             vk::PipelineStageFlags2);
 
   Buffer counters_, readback_;
 };
 
-/// At the end of a frame, after compute shaders: lets the CPU read the counters.
-void recordReadback(const Commands& commands,
-                    std::initializer_list<const CountersBuffer*> counters);
+/// At the end of a frame, after shaders of the stages `from` have counted: lets the CPU read the
+/// counters.
+void recordReadback(const Commands& commands, std::initializer_list<const CountersBuffer*> counters,
+                    vk::PipelineStageFlags2 from = vk::PipelineStageFlagBits2::eComputeShader);
 
 }  // namespace oitlab

@@ -2,6 +2,7 @@
 
 #include "gpu/debug_names.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab {
 
@@ -66,9 +67,10 @@ void GpuImage::transition(const Commands& commands, vk::ImageLayout from, vk::Im
 }
 
 void uploadImage(const Device& device, const GpuImage& image, std::span<const LevelData> levels) {
+  constexpr std::size_t alignment = 16;  // of a copy: the size of the largest block of a format
   MemoryLedger unlisted;
   std::uint64_t total = 0;
-  for (const LevelData& level : levels) total += (level.bytes.size() + 15) / 16 * 16;
+  for (const LevelData& level : levels) total += roundUp(level.bytes.size(), alignment);
   const Buffer staging(device, unlisted, "staging", total, BufferKind::upload);
   std::vector<vk::BufferImageCopy> copies;
   std::uint64_t offset = 0;
@@ -79,7 +81,7 @@ void uploadImage(const Device& device, const GpuImage& image, std::span<const Le
         offset, 0, 0,
         vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eColor, level.level, 0, 1),
         vk::Offset3D(), vk::Extent3D(level.width, level.height, 1));
-    offset += (level.bytes.size() + 15) / 16 * 16;
+    offset += roundUp(level.bytes.size(), alignment);
   }
   device.runOnce([&](const Commands& commands) {
     using Stage = vk::PipelineStageFlagBits2;

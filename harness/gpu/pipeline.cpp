@@ -174,13 +174,9 @@ Pipeline Pipeline::graphics(const Device& device, const Graphics& description) {
   return pipeline;
 }
 
-void Pipeline::bind(const Commands& commands) const {
-  commands.bindPipeline(bindPoint_, pipeline_);
-}
-
 void Pipeline::bind(const Commands& commands, vk::DescriptorSet set) const {
-  bind(commands);
-  commands.bindDescriptorSets(bindPoint_, layout_, 0, set, nullptr);
+  commands.bindPipeline(bindPoint_, pipeline_);
+  if (set) commands.bindDescriptorSets(bindPoint_, layout_, 0, set, nullptr);
 }
 
 }  // namespace oitlab

@@ -11,7 +11,7 @@ namespace oitlab {
 /// Specialization constants: values of constant_id 0, 1, 2, ...
 using Constants = std::vector<std::uint32_t>;
 
-/// A pipeline of either kind. Bind, push, then draw or dispatch. A handle: the device owns what is
+/// A pipeline of either kind. Bind, then draw or dispatch. A handle: the device owns what is
 /// behind it, and must outlive it.
 class Pipeline {
  public:
@@ -55,16 +55,15 @@ class Pipeline {
   /// Throws DeviceError, with the shaders and `ifRefused`, where the driver makes none.
   static Pipeline graphics(const Device& device, const Graphics& description);
 
+  /// Binds it with the images of `set`; null for shaders that touch no image.
   void bind(const Commands& commands, vk::DescriptorSet set) const;
 
-  /// For shaders that touch no image.
-  void bind(const Commands& commands) const;
-
-  /// Pushes a struct of at most Device::pushConstantBytes for the bound pipeline.
-  template <typename T>
-  void push(const Commands& commands, const T& values) const {
-    static_assert(sizeof(T) <= Device::pushConstantBytes);
-    commands.pushConstants<T>(layout_, vk::ShaderStageFlagBits::eAll, 0, values);
+  /// The same, with push constants: a struct of at most Device::pushConstantBytes.
+  template <typename Push>
+  void bind(const Commands& commands, vk::DescriptorSet set, const Push& push) const {
+    static_assert(sizeof(Push) <= Device::pushConstantBytes);
+    bind(commands, set);
+    commands.pushConstants<Push>(layout_, vk::ShaderStageFlagBits::eAll, 0, push);
   }
 
  private:

@@ -3,6 +3,7 @@
 #include "common/sort/sort_types.h"
 #include "gpu/barrier.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab {
 namespace {
@@ -19,7 +20,7 @@ void computeBarrier(const Commands& commands) {
 
 RadixSort::RadixSort(const Device& device, MemoryLedger& memory, std::uint32_t count)
     : count_(count),
-      blocks_(std::uint32_t((std::uint64_t(count) + SORT_BLOCK - 1) / SORT_BLOCK)),
+      blocks_(divideUp(count, std::uint32_t(SORT_BLOCK))),
       countDigits_(Pipeline::compute(device, "common/sort/count.comp")),
       scan_(Pipeline::compute(device, "common/sort/scan.comp")),
       scatter_(Pipeline::compute(device, "common/sort/scatter.comp")) {
@@ -39,8 +40,7 @@ void RadixSort::record(const Commands& commands) const {
   SortPush push{
       .counts = counts_.address(), .totals = totals_.address(), .count = count_, .blocks = blocks_};
   const auto step = [&](const Pipeline& pipeline, std::uint32_t groups) {
-    pipeline.bind(commands);
-    pipeline.push(commands, push);
+    pipeline.bind(commands, nullptr, push);
     commands.dispatch(groups, 1, 1);
     computeBarrier(commands);
   };

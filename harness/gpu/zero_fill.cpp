@@ -23,8 +23,7 @@ void ZeroFill::record(const Commands& commands, std::span<const Buffer* const> b
   constexpr std::uint32_t wordsEach = 8;
   const std::uint32_t groups = std::clamp(most / (wordsEach * ZERO_FILL_GROUP), 1u, 65535u);
   push.invocations = groups * ZERO_FILL_GROUP;
-  pipeline_.bind(commands);
-  pipeline_.push(commands, push);
+  pipeline_.bind(commands, nullptr, push);
   commands.dispatch(groups, 1, 1);
 }
 

@@ -41,13 +41,13 @@ std::optional<double> ClockProbe::run() {
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     timer_.begin(commands_, false);
     waitForAll(commands_);
-    pipeline_.bind(commands_);
     // From [0, 1) towards 1: no value is large, none denormal.
-    pipeline_.push(commands_, ClockProbePush{.result = result_.address(),
-                                             .turns = turns_,
-                                             .factor = 0.999f,
-                                             .summand = 0.001f,
-                                             .threshold = 2.0f});
+    pipeline_.bind(commands_, nullptr,
+                   ClockProbePush{.result = result_.address(),
+                                  .turns = turns_,
+                                  .factor = 0.999f,
+                                  .summand = 0.001f,
+                                  .threshold = 2.0f});
     commands_.dispatch(groups_, 1, 1);
     waitForAll(commands_);
     timer_.end(commands_);

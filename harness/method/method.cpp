@@ -22,6 +22,23 @@ std::vector<std::string> MethodInfo::missing(const DeviceInfo& device) const {
   return missing;
 }
 
+std::unique_ptr<Method> MethodInfo::makeFor(const Device& device, const GpuScene& scene,
+                                            const Target& target,
+                                            const Parameters& parameters) const {
+  if (const auto lacking = missing(device.info()); !lacking.empty())
+    fail<DeviceError>("method {} cannot run on {}: it lacks {}", name, device.info().name,
+                      fmt::join(lacking, ", "));
+  auto ledger = std::make_unique<MemoryLedger>();
+  try {
+    auto method = make({device, scene, target, *ledger, parameters});
+    method->ledger_ = std::move(ledger);
+    return method;
+  } catch (const vk::SystemError& error) {
+    fail<DeviceError>("method {} could not be made on {}: {}", name, device.info().name,
+                      error.what());
+  }
+}
+
 const std::map<std::string, MethodInfo>& methods() {
   return registry();
 }

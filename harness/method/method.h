@@ -21,16 +21,20 @@ struct Status {
   std::map<std::string, std::uint64_t> counters;
 };
 
-/// An order-independent-transparency method. Its life: prepare() once, then any number of frames,
-/// each record(), wait for the device, status().
+/// What a method is made for. All of it but `parameters` outlives the method.
+struct MethodContext {
+  const Device& device;
+  const GpuScene& scene;
+  const Target& target;
+  MemoryLedger& memory;  ///< buffers made with it are listed in the results
+  const Parameters& parameters;
+};
+
+/// An order-independent-transparency method. Its constructor makes pipelines and buffers; then come
+/// any number of frames, each record(), wait for the device, status().
 class Method {
  public:
   virtual ~Method() = default;
-
-  /// Makes pipelines and buffers. `scene` and `target` outlive the method. Buffers are made with
-  /// `memory`, so that they are listed in the results. May throw DeviceError.
-  virtual void prepare(const Device& device, const GpuScene& scene, const Target& target,
-                       const Parameters& parameters) = 0;
 
   /// Records a frame. On entry the target holds the opaque colour and depth, visible to all stages;
   /// on return the target must hold the finished image, writes not yet made visible.
@@ -42,10 +46,14 @@ class Method {
   /// After the device is done with the frame.
   virtual Status status() = 0;
 
-  const MemoryLedger& memory() const { return memory_; }
+  /// The buffers of a method that MethodInfo::makeFor() made.
+  const MemoryLedger& memory() const { return *ledger_; }
 
- protected:
-  MemoryLedger memory_;
+ private:
+  friend struct MethodInfo;
+
+  // In the base, so that it outlives the buffers of the method itself.
+  std::unique_ptr<MemoryLedger> ledger_ = std::make_unique<MemoryLedger>();
 };
 
 /// The declaration of a method: who it is, what it takes, what it needs.
@@ -56,10 +64,16 @@ struct MethodInfo {
   bool exact = false;   ///< claims the exact image
   std::vector<Parameter> parameters;
   std::vector<std::string> features;  ///< Vulkan features it needs beyond the baseline
-  std::function<std::unique_ptr<Method>()> make;
+  std::function<std::unique_ptr<Method>(const MethodContext&)> make;
 
   /// What `device` lacks for this method; empty when it can run there.
   std::vector<std::string> missing(const DeviceInfo& device) const;
+
+  /// Calls `make` with a ledger for the method's memory. `device`, `scene` and `target` must
+  /// outlive the method. Throws DeviceError when the device lacks a feature, memory, or refuses a
+  /// shader.
+  std::unique_ptr<Method> makeFor(const Device& device, const GpuScene& scene, const Target& target,
+                                  const Parameters& parameters) const;
 };
 
 /// All registered methods by name.
@@ -68,8 +82,14 @@ const std::map<std::string, MethodInfo>& methods();
 /// Throws InputError with a suggestion when there is no such method.
 const MethodInfo& findMethod(const std::string& name);
 
-/// Registers a method: `const RegisterMethod registered(info)` in the method's own file is the
-/// whole of it.
+/// Constructs a method, as MethodInfo::make.
+template <typename T>
+std::unique_ptr<Method> makeMethod(const MethodContext& context) {
+  return std::make_unique<T>(context);
+}
+
+/// Registers a method: `const RegisterMethod registered(info)` in the method's own file is all that
+/// it takes.
 struct RegisterMethod {
   explicit RegisterMethod(MethodInfo info);
 };

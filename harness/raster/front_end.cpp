@@ -5,28 +5,26 @@
 
 #include "scene/quads.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab::raster {
 namespace {
 
 using Stage = vk::PipelineStageFlagBits2;
 
-/// A sixteenth more than was counted, so that a slowly turning camera does not grow every frame.
-std::uint32_t withSlack(std::uint64_t counted) {
+/// The room to make for `counted` items that did not fit.
+std::uint32_t roomFor(std::uint64_t counted) {
   constexpr std::uint64_t most = 0xfffffff0u;
   if (counted > most)
     fail<DeviceError>("{} primitives in bins are more than 32-bit lists can name", counted);
-  return std::uint32_t(std::min(counted + counted / 16 + 64, most));
+  return std::uint32_t(std::min(withSlack(counted), most));
 }
 
-std::uint32_t divideUp(std::uint32_t a, std::uint32_t b) {
-  return (a + b - 1) / b;
-}
-
-/// An invocation an item.
+/// One invocation per item.
 void dispatchEach(const Commands& commands, std::uint32_t items) {
-  const std::uint32_t groups = divideUp(std::max(items, 1u), SETUP_GROUP);
-  commands.dispatch(std::min(groups, MAX_GROUPS), divideUp(groups, MAX_GROUPS), 1);
+  const std::uint32_t groups = divideUp(std::max(items, 1u), std::uint32_t(SETUP_GROUP));
+  const auto most = std::uint32_t(MAX_GROUPS);
+  commands.dispatch(std::min(groups, most), divideUp(groups, most), 1);
 }
 
 }  // namespace
@@ -36,8 +34,8 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
     : device_(device),
       memory_(memory),
       options_(options),
-      binColumns_(divideUp(target.width(), BIN_SIZE)),
-      binRows_(divideUp(target.height(), BIN_SIZE)),
+      binColumns_(divideUp(target.width(), std::uint32_t(BIN_SIZE))),
+      binRows_(divideUp(target.height(), std::uint32_t(BIN_SIZE))),
       zeroFill_(device),
       project_(Pipeline::compute(device, "raster/project.comp")),
       setup_(Pipeline::compute(device, "raster/setup.comp", {{"HAS_IRREGULAR", "0"}})),
@@ -153,8 +151,7 @@ RasterPush FrontEnd::addresses(const Frame& frame) const {
 void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> alsoZeroed) {
   const RasterPush push = addresses(frame);
   auto run = [&](const Pipeline& pipeline, auto&& dispatch) {
-    pipeline.bind(frame.commands, frame.bindings);
-    pipeline.push(frame.commands, push);
+    frame.bind(pipeline, push);
     dispatch();
   };
   const auto compute = Stage::eComputeShader;
@@ -174,7 +171,8 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
       frame.barrier(compute, compute);
     }
     frame.finishTarget(1);
-    run(offsets_, [&] { frame.commands.dispatch(divideUp(bins(), OFFSET_GROUP), 1, 1); });
+    run(offsets_,
+        [&] { frame.commands.dispatch(divideUp(bins(), std::uint32_t(OFFSET_GROUP)), 1, 1); });
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(writeSmall_,
         [&] { frame.commands.dispatchIndirect(counters_.vk(), offsetof(RasterCounters, small)); });
@@ -198,11 +196,11 @@ bool FrontEnd::grow() {
   if (c.largeTriangles > 0 && !largeSeen_) largeSeen_ = lacked = true;
   if (c.ready != 0) return lacked;
   if (c.smallQuads > smallCapacity_)
-    makeRoomForSmall(std::min<std::uint64_t>(withSlack(c.smallQuads), quadCount_));
-  if (c.largeTriangles > largeCapacity_) makeRoomForLarge(withSlack(c.largeTriangles));
+    makeRoomForSmall(std::min<std::uint64_t>(roomFor(c.smallQuads), quadCount_));
+  if (c.largeTriangles > largeCapacity_) makeRoomForLarge(roomFor(c.largeTriangles));
   if (c.irregularTriangles > irregularCapacity_)
-    makeRoomForIrregular(withSlack(c.irregularTriangles));
-  if (c.entries > entryCapacity_) makeRoomForEntries(withSlack(c.entries));
+    makeRoomForIrregular(roomFor(c.irregularTriangles));
+  if (c.entries > entryCapacity_) makeRoomForEntries(roomFor(c.entries));
   return true;
 }
 

@@ -11,23 +11,18 @@ namespace {
 /// makes no image.
 class FragmentCounter : public Method {
  public:
-  void prepare(const Device& device, const GpuScene&, const Target& target,
-               const Parameters&) override {
-    pipeline_ = Pipeline::graphics(
-        device, {.fragmentShader = "depth/count.frag", .depthFormat = Target::depthFormat});
-    const std::uint64_t bytes =
-        std::uint64_t(target.width()) * target.height() * sizeof(std::uint32_t);
-    counts_ = Buffer(device, memory_, "fragment counts", bytes);
-    readback_ = Buffer(device, memory_, "counts readback", bytes, BufferKind::readback);
-  }
+  FragmentCounter(const Device& device, const Target& target)
+      : pipeline_(Pipeline::graphics(
+            device, {.fragmentShader = "depth/count.frag", .depthFormat = Target::depthFormat})),
+        counts_(device, unlisted_, "fragment counts", bytesFor(target)),
+        readback_(device, unlisted_, "counts readback", bytesFor(target), BufferKind::readback) {}
 
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
     fillBuffer(frame.commands, counts_, 0);
     frame.barrier(Stage::eTransfer, Stage::eFragmentShader);
     frame.renderDepthTested({}, [&] {
-      pipeline_.bind(frame.commands, frame.bindings);
-      pipeline_.push(frame.commands, CountPush{frame.constants, counts_.address()});
+      frame.bind(pipeline_, CountPush{frame.constants, counts_.address()});
       frame.drawTransparent();
     });
     frame.barrier(Stage::eFragmentShader, Stage::eTransfer);
@@ -43,6 +38,11 @@ class FragmentCounter : public Method {
   }
 
  private:
+  static std::uint64_t bytesFor(const Target& target) {
+    return target.pixels() * sizeof(std::uint32_t);
+  }
+
+  MemoryLedger unlisted_;
   Pipeline pipeline_;
   Buffer counts_, readback_;
 };
@@ -74,13 +74,7 @@ DepthComplexity countFragments(Renderer& renderer, const Camera& camera) {
   if (!device.info().has("fragmentStoresAndAtomics"))
     fail<DeviceError>("fragments cannot be counted on {}: it lacks fragmentStoresAndAtomics",
                       device.info().name);
-  FragmentCounter counter;
-  try {
-    counter.prepare(device, renderer.scene(), renderer.target(), Parameters({}, {}, "depth"));
-  } catch (const vk::SystemError& error) {
-    fail<DeviceError>("the fragment counter could not be prepared on {}: {}", device.info().name,
-                      error.what());
-  }
+  FragmentCounter counter(device, renderer.target());
   renderer.render(counter, camera);
   return {renderer.target().width(), renderer.target().height(), counter.counts()};
 }

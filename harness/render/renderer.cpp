@@ -2,6 +2,7 @@
 
 #include "common/frame_types.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab {
 namespace {
@@ -43,19 +44,8 @@ Renderer::Renderer(const Device& device, const GpuScene& scene, const Target& ta
       commands_(device.makeCommandBuffer()),
       fence_(device.vk(), vk::FenceCreateInfo()) {}
 
-std::unique_ptr<Method> Renderer::prepare(const MethodInfo& info,
-                                          const Parameters& parameters) const {
-  if (const auto missing = info.missing(device_.info()); !missing.empty())
-    fail<DeviceError>("method {} cannot run on {}: it lacks {}", info.name, device_.info().name,
-                      fmt::join(missing, ", "));
-  auto method = info.make();
-  try {
-    method->prepare(device_, scene_, target_, parameters);
-  } catch (const vk::SystemError& error) {
-    fail<DeviceError>("method {} could not be prepared on {}: {}", info.name, device_.info().name,
-                      error.what());
-  }
-  return method;
+std::unique_ptr<Method> Renderer::make(const MethodInfo& info, const Parameters& parameters) const {
+  return info.makeFor(device_, scene_, target_, parameters);
 }
 
 FrameResult Renderer::render(Method& method, const Camera& camera, bool instrumented) {
@@ -155,8 +145,7 @@ void Renderer::recordOpaque(const Frame& frame) const {
   commands.setViewport(0,
                        vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
   commands.setScissor(0, target_.area());
-  opaque_.bind(commands, frame.bindings);
-  opaque_.push(commands, frame.constants);
+  frame.bind(opaque_, frame.constants);
   commands.bindIndexBuffer(scene_.opaqueIndices().vk(), 0, vk::IndexType::eUint32);
   commands.drawIndexed(scene_.opaqueCount() * 3, 1, 0, 0, 0);
   commands.endRendering();
@@ -177,13 +166,13 @@ void Renderer::recordBackground(const Frame& frame, std::uint32_t part) const {
     target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,
                                Stage::eAllCommands, Access::eMemoryWrite, Stage::eComputeShader,
                                Access::eShaderStorageWrite);
-  background_.bind(frame.commands, frame.bindings);
-  const std::uint32_t rows = (target_.height() + 31) / 32;  // of workgroups
+  constexpr std::uint32_t groupSize = 32;  // pixels on a side, of background.comp
+  const std::uint32_t rows = divideUp(target_.height(), groupSize);
   const std::uint32_t first = rows * part / Frame::targetParts;
   const std::uint32_t end = rows * (part + 1) / Frame::targetParts;
   if (first == end) return;
-  background_.push(frame.commands, BackgroundPush{backgroundColor, first});
-  frame.commands.dispatch((target_.width() + 31) / 32, end - first, 1);
+  frame.bind(background_, BackgroundPush{backgroundColor, first});
+  frame.commands.dispatch(divideUp(target_.width(), groupSize), end - first, 1);
 }
 
 std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& method) const {

@@ -21,8 +21,9 @@ class Renderer {
   /// `scene` and `target` must outlive this.
   Renderer(const Device& device, const GpuScene& scene, const Target& target);
 
-  /// A method made ready for this renderer's scene and target.
-  std::unique_ptr<Method> prepare(const MethodInfo& info, const Parameters& parameters) const;
+  /// A method for this renderer's scene and target, which must outlive it. Throws as
+  /// MethodInfo::makeFor().
+  std::unique_ptr<Method> make(const MethodInfo& info, const Parameters& parameters) const;
 
   /// Renders one frame and waits for it. Records again for as long as the method asks for it.
   /// Throws DeviceError when the device fails or the method does not come to an end.

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -78,6 +79,21 @@ glm::mat4 Camera::projectionMatrix(float aspect) const {
   projection[2][3] = -1.0f;   // w = distance
   projection[3][2] = near;    // z = near, so z / w = near / distance
   return projection;
+}
+
+DepthRange depthRange(const Camera& camera, const Bounds& bounds) {
+  const glm::vec3 forward = glm::normalize(camera.target - camera.eye);
+  float nearest = std::numeric_limits<float>::max(), farthest = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 point = {corner & 1 ? bounds.max.x : bounds.min.x,
+                             corner & 2 ? bounds.max.y : bounds.min.y,
+                             corner & 4 ? bounds.max.z : bounds.min.z};
+    const float depth = glm::dot(point - camera.eye, forward);
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  }
+  nearest = std::max(nearest, camera.near);
+  return {nearest, std::max(farthest, 1.001f * nearest)};
 }
 
 Camera orbitCamera(glm::vec3 center, float distance, float yaw, float pitch, float fovY) {

@@ -30,6 +30,16 @@ struct Camera {
   glm::mat4 projectionMatrix(float aspect) const;
 };
 
+/// Distances from the eye along the viewing direction.
+struct DepthRange {
+  float nearest, farthest;  ///< near plane <= nearest < farthest
+};
+
+/// The depths at which something in `bounds` can be seen: those of its corners, cut at the near
+/// plane. `farthest` is at least a thousandth beyond `nearest`, so that the range can be divided
+/// by.
+DepthRange depthRange(const Camera& camera, const Bounds& bounds);
+
 /// A camera on a sphere around `center`: yaw turns about +Y (0 looks from +Z), pitch lifts the eye
 /// towards +Y. Radians; `distance` > 0.
 Camera orbitCamera(glm::vec3 center, float distance, float yaw, float pitch, float fovY);

@@ -14,6 +14,7 @@
 #include "abuffer/sort_passes.h"
 #include "method/method.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab::abuffer {
 namespace {
@@ -22,20 +23,17 @@ using Stage = vk::PipelineStageFlagBits2;
 
 class Abuffer : public Method {
  public:
-  void prepare(const Device& device, const GpuScene&, const Target& target,
-               const Parameters& parameters) override {
-    device_ = &device;
-    options_.emplace(parameters, device.info(), formatName(target.format()));
-    lists_ =
-        ListMemory(device, memory_, *options_, std::uint64_t(target.width()) * target.height());
-    makeStencil(device, target);
-    makeCapture(device);
-    sorts_ = SortPasses(device, *options_, stencil_.extent().width > 0 ? &stencil_ : nullptr);
-    if (!options_->truncate)
-      deep_ = Pipeline::compute(device, "abuffer/deep.comp", options_->nodes);
-    if (options_->byInterval())
-      composite_ = Pipeline::compute(device, "abuffer/composite.comp", options_->nodes);
-    tally_ = Pipeline::compute(device, "abuffer/tally.comp", options_->nodes);
+  explicit Abuffer(const MethodContext& context)
+      : device_(context.device),
+        options_(context.parameters, device_.info(), formatName(context.target.format())),
+        lists_(device_, context.memory, options_, context.target.pixels()),
+        stencil_(makeStencil(context)),
+        sorts_(device_, options_, stencil_.extent().width > 0 ? &stencil_ : nullptr) {
+    makeCapture();
+    if (!options_.truncate) deep_ = Pipeline::compute(device_, "abuffer/deep.comp", options_.nodes);
+    if (options_.byInterval())
+      composite_ = Pipeline::compute(device_, "abuffer/composite.comp", options_.nodes);
+    tally_ = Pipeline::compute(device_, "abuffer/tally.comp", options_.nodes);
   }
 
   void record(const Frame& frame) override {
@@ -50,24 +48,20 @@ class Abuffer : public Method {
     const auto shaders = Stage::eFragmentShader | Stage::eComputeShader;
     frame.barrier(shaders, shaders | Stage::eDrawIndirect);
     if (rounds_ > 0) frame.stage("deep", [&] { sortDeep(frame, push); });
-    if (options_->byInterval()) frame.stage("composite", [&] { pixels(frame, composite_, push); });
+    if (options_.byInterval()) frame.stage("composite", [&] { pixels(frame, composite_, push); });
     if (frame.instrumented) frame.stage("tally", [&] { pixels(frame, tally_, push); });
-    frame.barrier(shaders, Stage::eTransfer);
-    lists_.copyCounters(frame);
-    frame.barrier(Stage::eTransfer, Stage::eHost);
+    recordReadback(frame.commands, {&lists_.counters()}, shaders);
   }
 
   Status status() override {
-    const Counters c = lists_.counters();
+    const Counters c = lists_.counters().read<Counters>();
     bool again = false;
-    if (c.fragments > lists_.capacity() && !options_->drop) {
-      // A little more than was counted, so that a slowly turning camera does not grow it every
-      // frame.
-      lists_.growNodes(c.fragments + c.fragments / 16ull);
+    if (c.fragments > lists_.capacity() && !options_.drop) {
+      lists_.growNodes(withSlack(c.fragments));
       again = true;
     }
     if (c.deepPixels > lists_.deepCapacity()) {
-      lists_.growDeepList(c.deepPixels + c.deepPixels / 16ull);
+      lists_.growDeepList(withSlack(c.deepPixels));
       again = true;
     }
     if (c.deepPixels > 0 && rounds_ == 0) {
@@ -82,63 +76,63 @@ class Abuffer : public Method {
       fail<DeviceError>(
           "abuffer: the lists of {} pixels do not end as lists do, or {} does not carry out the "
           "shaders' loops in full (a pixel may be too deep for it)",
-          c.broken, device_->info().name);
+          c.broken, device_.info().name);
     return {.counters = countersOf(c)};
   }
 
  private:
-  void makeStencil(const Device& device, const Target& target) {
-    if (!options_->byInterval() || !options_->fragmentShader()) return;
+  /// An image without extent where the options need none.
+  GpuImage makeStencil(const MethodContext& context) const {
+    if (!options_.byInterval() || !options_.fragmentShader()) return {};
     using Aspect = vk::ImageAspectFlagBits;
     const vk::Format both = vk::Format::eD32SfloatS8Uint, alone = vk::Format::eS8Uint;
     const auto use = vk::FormatFeatureFlagBits::eDepthStencilAttachment;
     // A stencil that the capture counts in stands beside the depth that the capture is tested with,
     // the same 32-bit floats as the opaque depth.
-    const vk::Format format = options_->stencilCounts()
-                                  ? device.supportedFormat({both}, use)
-                                  : device.supportedFormat({alone, both}, use);
+    const vk::Format format = options_.stencilCounts()
+                                  ? device_.supportedFormat({both}, use)
+                                  : device_.supportedFormat({alone, both}, use);
     vk::ImageAspectFlags aspects = Aspect::eStencil;
     if (format == both) aspects |= Aspect::eDepth;
-    stencil_ =
-        GpuImage(device, memory_,
-                 {format == both ? "depth and stencil" : "stencil", format, target.width(),
-                  target.height(), 1, vk::ImageUsageFlagBits::eDepthStencilAttachment, aspects});
+    return {device_,
+            context.memory,
+            {format == both ? "depth and stencil" : "stencil", format, context.target.width(),
+             context.target.height(), 1, vk::ImageUsageFlagBits::eDepthStencilAttachment, aspects}};
   }
 
-  void makeCapture(const Device& device) {
+  void makeCapture() {
     Pipeline::Graphics description{.fragmentShader = "abuffer/capture.frag",
-                                   .defines = options_->nodes,
+                                   .defines = options_.nodes,
                                    .depthFormat = Target::depthFormat};
-    if (options_->counts()) description.defines.emplace("COUNTS", "1");
-    if (options_->stencilCounts()) {
+    if (options_.counts()) description.defines.emplace("COUNTS", "1");
+    if (options_.stencilCounts()) {
       const vk::Format format = stencil_.description().format;
       description.depthFormat = description.stencilFormat = format;
       using Operation = vk::StencilOp;
       description.stencil =
           vk::StencilOpState(Operation::eKeep, Operation::eIncrementAndClamp, Operation::eKeep,
                              vk::CompareOp::eAlways, 0xff, 0xff, 0);
-      copyDepth_ = Pipeline::graphics(device, {.vertexShader = "common/fullscreen.vert",
-                                               .fragmentShader = "abuffer/copy_depth.frag",
-                                               .depthFormat = format,
-                                               .depthWrite = true,
-                                               .depthCompare = vk::CompareOp::eAlways,
-                                               .stencilFormat = format});
+      copyDepth_ = Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
+                                                .fragmentShader = "abuffer/copy_depth.frag",
+                                                .depthFormat = format,
+                                                .depthWrite = true,
+                                                .depthCompare = vk::CompareOp::eAlways,
+                                                .stencilFormat = format});
     }
-    capture_ = Pipeline::graphics(device, description);
+    capture_ = Pipeline::graphics(device_, description);
   }
 
   void capture(const Frame& frame, const Push& push) {
     const auto tests = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
     const auto draw = [&] {
-      capture_.bind(frame.commands, frame.bindings);
-      capture_.push(frame.commands, push);
-      if (options_->stencilCounts())
+      frame.bind(capture_, push);
+      if (options_.stencilCounts())
         frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, 0);
       frame.drawTransparent();
     };
-    if (options_->stencilCounts()) frame.stage("copy depth", [&] { copyDepth(frame); });
+    if (options_.stencilCounts()) frame.stage("copy depth", [&] { copyDepth(frame); });
     frame.stage("capture", [&] {
-      if (options_->stencilCounts())
+      if (options_.stencilCounts())
         frame.renderOnDepthStencil(stencil_, vk::AttachmentLoadOp::eLoad, draw);
       else
         frame.renderDepthTested({}, draw);
@@ -155,7 +149,7 @@ class Abuffer : public Method {
                         Stage::eAllCommands, Access::eMemoryWrite, tests,
                         Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
     frame.renderOnDepthStencil(stencil_, vk::AttachmentLoadOp::eClear, [&] {
-      copyDepth_.bind(frame.commands, frame.bindings);
+      frame.bind(copyDepth_);
       frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, 0);
       frame.drawFullscreen();
     });
@@ -163,18 +157,16 @@ class Abuffer : public Method {
   }
 
   void sortDeep(const Frame& frame, Push push) const {
-    deep_.bind(frame.commands, frame.bindings);
     push.rounds = rounds_;
     for (push.round = 0; push.round < rounds_; ++push.round) {
-      deep_.push(frame.commands, push);
-      frame.commands.dispatchIndirect(lists_.counterBuffer(), offsetof(Counters, deepGroups));
+      frame.bind(deep_, push);
+      frame.commands.dispatchIndirect(lists_.counters().vk(), offsetof(Counters, deepGroups));
       frame.barrier(Stage::eComputeShader, Stage::eComputeShader | Stage::eTransfer);
     }
   }
 
   static void pixels(const Frame& frame, const Pipeline& pipeline, const Push& push) {
-    pipeline.bind(frame.commands, frame.bindings);
-    pipeline.push(frame.commands, push);
+    frame.bind(pipeline, push);
     frame.dispatchPixels();
   }
 
@@ -188,7 +180,7 @@ class Abuffer : public Method {
       fail<DeviceError>(
           "abuffer: {} fragments were captured, {} blended, {} truncated and {} lost: {} does not "
           "carry out the shaders' loops in full (a pixel may be too deep for it)",
-          c.fragments, c.blended, c.truncatedFragments, lost, device_->info().name);
+          c.fragments, c.blended, c.truncatedFragments, lost, device_.info().name);
     counters["blended_fragments"] = c.blended;
     counters["max_fragments_per_pixel"] = c.deepest;
     counters["covered_pixels"] = c.covered;
@@ -200,8 +192,8 @@ class Abuffer : public Method {
     return counters;
   }
 
-  const Device* device_ = nullptr;
-  std::optional<Options> options_;
+  const Device& device_;
+  Options options_;
   ListMemory lists_;
   GpuImage stencil_;
   SortPasses sorts_;
@@ -217,7 +209,7 @@ const RegisterMethod registered({
     .exact = true,
     .parameters = declareParameters(),
     .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
-    .make = [] { return std::make_unique<Abuffer>(); },
+    .make = makeMethod<Abuffer>,
 });
 
 }  // namespace

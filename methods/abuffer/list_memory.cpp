@@ -6,15 +6,13 @@ namespace oitlab::abuffer {
 
 ListMemory::ListMemory(const Device& device, MemoryLedger& ledger, const Options& options,
                        std::uint64_t pixels)
-    : device_(&device),
-      ledger_(&ledger),
-      unlisted_(std::make_unique<MemoryLedger>()),
+    : device_(device),
+      ledger_(ledger),
       pixels_(pixels),
-      nodeBytes_(options.nodeBytes) {
+      nodeBytes_(options.nodeBytes),
+      counters_(device, ledger, "counters", sizeof(Counters)) {
   constexpr std::uint64_t word = sizeof(std::uint32_t);
   heads_ = Buffer(device, ledger, "list heads", pixels * word);
-  counters_ = Buffer(device, ledger, "counters", sizeof(Counters));
-  readback_ = Buffer(device, ledger, "counters readback", sizeof(Counters), BufferKind::readback);
   if (options.counts()) counts_ = Buffer(device, ledger, "fragment counts", pixels * word);
   if (options.byInterval())
     intervals_ = Buffer(device, ledger, "intervals", MOST_INTERVALS * sizeof(Interval));
@@ -30,19 +28,19 @@ void ListMemory::growNodes(std::uint64_t fragments) {
     fail<DeviceError>("abuffer: {} fragments are more than the 2^32 - 1 that its lists can name",
                       fragments);
   nodes_ = Buffer();  // give the old one back first: both may not fit
-  nodes_ = Buffer(*device_, *ledger_, "fragment nodes", fragments * nodeBytes_);
+  nodes_ = Buffer(device_, ledger_, "fragment nodes", fragments * nodeBytes_);
   capacity_ = std::uint32_t(fragments);
 }
 
 void ListMemory::growDeepList(std::uint64_t pixels) {
   deep_ = Buffer();
-  deep_ = Buffer(*device_, *ledger_, "deep pixels", pixels * sizeof(DeepPixel));
+  deep_ = Buffer(device_, ledger_, "deep pixels", pixels * sizeof(DeepPixel));
   deepCapacity_ = std::uint32_t(pixels);
 }
 
 void ListMemory::clear(const Frame& frame) {
   if (frame.instrumented && !tallies_)
-    tallies_ = Buffer(*device_, *unlisted_, "tallies", pixels_ * sizeof(Tally));
+    tallies_ = Buffer(device_, unlisted_, "tallies", pixels_ * sizeof(Tally));
   fillBuffer(frame.commands, heads_, LIST_END);
   if (counts_) fillBuffer(frame.commands, counts_, 0);
   if (intervals_) fillBuffer(frame.commands, intervals_, 0);
@@ -50,10 +48,6 @@ void ListMemory::clear(const Frame& frame) {
   Counters zero{};
   zero.deepGroups.z = 1;
   frame.commands.updateBuffer<Counters>(counters_.vk(), 0, zero);
-}
-
-void ListMemory::copyCounters(const Frame& frame) const {
-  frame.commands.copyBuffer(counters_.vk(), readback_.vk(), vk::BufferCopy(0, 0, sizeof(Counters)));
 }
 
 Push ListMemory::push(const Frame& frame) const {

@@ -3,14 +3,13 @@
 #include "abuffer/abuffer_types.h"
 #include "abuffer/options.h"
 #include "frame/frame.h"
-#include "gpu/buffer.h"
+#include "gpu/counters_buffer.h"
 
 namespace oitlab::abuffer {
 
 /// The buffers of the method, as large as the options need and as the frames have shown.
 class ListMemory {
  public:
-  ListMemory() = default;
   /// For `pixels` pixels; what is the method's own is listed in `ledger`, which must outlive this.
   ListMemory(const Device& device, MemoryLedger& ledger, const Options& options,
              std::uint64_t pixels);
@@ -22,27 +21,26 @@ class ListMemory {
   /// Empty lists and counters at 0, not yet made visible.
   void clear(const Frame& frame);
 
-  /// Copies the counters to where the host reads them.
-  void copyCounters(const Frame& frame) const;
-  Counters counters() const { return readback_.mapped<Counters>()[0]; }
+  /// Holds Counters.
+  const CountersBuffer& counters() const { return counters_; }
 
   std::uint32_t capacity() const { return capacity_; }          ///< nodes
   std::uint32_t deepCapacity() const { return deepCapacity_; }  ///< pixels
   vk::Buffer intervalArguments() const { return intervals_.vk(); }
-  vk::Buffer counterBuffer() const { return counters_.vk(); }
 
   /// The addresses and capacities; the rest is left at 0.
   Push push(const Frame& frame) const;
 
  private:
-  const Device* device_ = nullptr;
-  MemoryLedger* ledger_ = nullptr;
+  const Device& device_;
+  MemoryLedger& ledger_;
   /// The tallies prove in instrumented frames that nothing was lost: they are no part of the
   /// method.
-  std::unique_ptr<MemoryLedger> unlisted_;
-  std::uint64_t pixels_ = 0;
-  std::uint32_t nodeBytes_ = 0, capacity_ = 0, deepCapacity_ = 0;
-  Buffer nodes_, heads_, counts_, counters_, readback_, intervals_, lists_, deep_, tallies_;
+  MemoryLedger unlisted_;
+  std::uint64_t pixels_;
+  std::uint32_t nodeBytes_, capacity_ = 0, deepCapacity_ = 0;
+  Buffer nodes_, heads_, counts_, intervals_, lists_, deep_, tallies_;
+  CountersBuffer counters_;
 };
 
 }  // namespace oitlab::abuffer

@@ -5,6 +5,8 @@
 #include "abuffer/abuffer_types.h"
 #include "abuffer/sort_table.h"
 
+#include "util/rounding.h"
+
 namespace oitlab::abuffer {
 namespace {
 
@@ -40,7 +42,7 @@ void defineSorts(IntervalPlan& plan, const Parameters& parameters, const DeviceI
   };
   std::uint32_t entries = uses("bitonic") ? std::bit_ceil(length) : length;
   if (uses("merge")) entries += (std::bit_ceil(length) + 1) / 2;
-  if (uses("register")) entries = (length + 31) / 32;
+  if (uses("register")) entries = divideUp(length, 32u);
   plan.localBytes = entries * entryBytes;
 }
 

@@ -29,7 +29,7 @@ Pipeline::Graphics fullscreen(const char* shader, const Defines& defines, const 
 }  // namespace
 
 SortPasses::SortPasses(const Device& device, const Options& options, const GpuImage* stencil)
-    : options_(&options), stencil_(stencil) {
+    : options_(options), stencil_(stencil) {
   for (const IntervalPlan& plan : options.intervals) {
     const std::string ifRefused = options.ifRefused(plan);
     if (!options.fragmentShader())
@@ -70,11 +70,11 @@ SortPasses::SortPasses(const Device& device, const Options& options, const GpuIm
 
 void SortPasses::record(const Frame& frame, const ListMemory& memory, Push push) const {
   push.intervalCount = std::uint32_t(sorts_.size());
-  push.maxFragments = options_->maxFragments;
-  if (!options_->byInterval()) return runAll(frame, push);
-  if (options_->stencilCounts()) return runCountingStencil(frame, push);
+  push.maxFragments = options_.maxFragments;
+  if (!options_.byInterval()) return runAll(frame, push);
+  if (options_.stencilCounts()) return runCountingStencil(frame, push);
   frame.stage("intervals", [&] { findIntervals(frame, push); });
-  if (options_->mask == Mask::lists)
+  if (options_.mask == Mask::lists)
     runLists(frame, memory, push);
   else
     runStencil(frame, memory, push);
@@ -82,29 +82,26 @@ void SortPasses::record(const Frame& frame, const ListMemory& memory, Push push)
 
 void SortPasses::findIntervals(const Frame& frame, const Push& push) const {
   const auto run = [&](const Pipeline& pipeline, auto&& dispatch) {
-    pipeline.bind(frame.commands, frame.bindings);
-    pipeline.push(frame.commands, push);
+    frame.bind(pipeline, push);
     dispatch();
     frame.barrier(Stage::eComputeShader,
                   Stage::eComputeShader | Stage::eFragmentShader | Stage::eDrawIndirect);
   };
   run(histogram_, [&] { frame.dispatchPixels(); });
   run(arguments_, [&] { frame.commands.dispatch(1, 1, 1); });
-  if (options_->mask == Mask::lists) run(fillLists_, [&] { frame.dispatchPixels(); });
+  if (options_.mask == Mask::lists) run(fillLists_, [&] { frame.dispatchPixels(); });
 }
 
 void SortPasses::runAll(const Frame& frame, const Push& push) const {
   frame.stage("sort", [&] {
     const Pipeline& sort = sorts_.front();
-    if (options_->fragmentShader()) {
+    if (options_.fragmentShader()) {
       frame.renderDepthTested({}, [&] {
-        sort.bind(frame.commands, frame.bindings);
-        sort.push(frame.commands, push);
+        frame.bind(sort, push);
         frame.drawFullscreen();
       });
     } else {
-      sort.bind(frame.commands, frame.bindings);
-      sort.push(frame.commands, push);
+      frame.bind(sort, push);
       frame.dispatchPixels();
     }
   });
@@ -113,8 +110,7 @@ void SortPasses::runAll(const Frame& frame, const Push& push) const {
 void SortPasses::runLists(const Frame& frame, const ListMemory& memory, Push push) const {
   for (std::size_t i = 0; i < sorts_.size(); ++i)
     frame.stage(stageName(i), [&] {
-      sorts_[i].bind(frame.commands, frame.bindings);
-      sorts_[i].push(frame.commands, forInterval(push, i));
+      frame.bind(sorts_[i], forInterval(push, i));
       frame.commands.dispatchIndirect(memory.intervalArguments(),
                                       i * sizeof(Interval) + offsetof(Interval, groups));
       if (frame.instrumented) frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
@@ -130,8 +126,7 @@ void SortPasses::runStencil(const Frame& frame, const ListMemory& memory, const 
   const auto runInterval = [&](std::size_t i) {
     const Push own = forInterval(push, i);
     const auto draw = [&](const Pipeline& pipeline) {
-      pipeline.bind(frame.commands, frame.bindings);
-      pipeline.push(frame.commands, own);
+      frame.bind(pipeline, own);
       frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack,
                                          std::uint32_t(i) + 1);
       frame.commands.drawIndirect(memory.intervalArguments(), i * sizeof(Interval), 1, 0);
@@ -157,15 +152,15 @@ void SortPasses::runStencil(const Frame& frame, const ListMemory& memory, const 
 /// least its lower bound that are left, and zeroing their stencil. What the stencil cannot tell
 /// apart, 255 fragments and more, is listed before all of them.
 void SortPasses::runCountingStencil(const Frame& frame, const Push& push) const {
-  if (!options_->truncate)
+  if (!options_.truncate)
     frame.stage("find deep", [&] {
       frame.renderOnDepthStencil(*stencil_, vk::AttachmentLoadOp::eLoad, [&] {
-        drawThroughStencil(frame, findDeep_, push, options_->intervals.back().high + 1);
+        drawThroughStencil(frame, findDeep_, push, options_.intervals.back().high + 1);
       });
       frame.barrier(stencilTests, stencilTests);
     });
   const auto runInterval = [&](std::size_t i) {
-    drawThroughStencil(frame, sorts_[i], forInterval(push, i), options_->intervals[i].low + 1);
+    drawThroughStencil(frame, sorts_[i], forInterval(push, i), options_.intervals[i].low + 1);
   };
   if (!frame.instrumented)
     return frame.renderOnDepthStencil(*stencil_, vk::AttachmentLoadOp::eLoad, [&] {
@@ -180,21 +175,20 @@ void SortPasses::runCountingStencil(const Frame& frame, const Push& push) const 
 
 void SortPasses::drawThroughStencil(const Frame& frame, const Pipeline& pipeline, const Push& push,
                                     std::uint32_t reference) const {
-  pipeline.bind(frame.commands, frame.bindings);
-  pipeline.push(frame.commands, push);
+  frame.bind(pipeline, push);
   frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, reference);
   frame.drawFullscreen();
 }
 
 Push SortPasses::forInterval(Push push, std::size_t interval) const {
   push.interval = std::uint32_t(interval);
-  push.low = options_->intervals[interval].low;
-  push.high = options_->intervals[interval].high;
+  push.low = options_.intervals[interval].low;
+  push.high = options_.intervals[interval].high;
   return push;
 }
 
 std::string SortPasses::stageName(std::size_t interval) const {
-  return fmt::format("sort {}", options_->intervals[interval].name);
+  return fmt::format("sort {}", options_.intervals[interval].name);
 }
 
 }  // namespace oitlab::abuffer

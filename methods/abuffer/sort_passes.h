@@ -8,8 +8,8 @@ namespace oitlab::abuffer {
 /// From captured lists to blended pixels: the intervals and how each comes to its pixels.
 class SortPasses {
  public:
-  SortPasses() = default;
-  /// `stencil` is the method's own image where the mask is one; it must outlive this.
+  /// `stencil` is the method's own image where the mask is one, else null; it and `options` must
+  /// outlive this.
   SortPasses(const Device& device, const Options& options, const GpuImage* stencil);
 
   /// Records all of it. The capture's writes must be visible to fragment and compute shaders, and a
@@ -27,8 +27,8 @@ class SortPasses {
   Push forInterval(Push push, std::size_t interval) const;
   std::string stageName(std::size_t interval) const;
 
-  const Options* options_ = nullptr;
-  const GpuImage* stencil_ = nullptr;
+  const Options& options_;
+  const GpuImage* stencil_;
   std::vector<Pipeline> sorts_;  ///< one for each interval
   Pipeline histogram_, arguments_, fillLists_, mask_, findDeep_;
 };

@@ -5,6 +5,7 @@
 #include "frame/sample_counter.h"
 #include "gpu/radix_sort.h"
 #include "method/method.h"
+#include "util/rounding.h"
 
 namespace oitlab::blend {
 
@@ -31,9 +32,8 @@ class CentroidSort {
                             .eye = frame.camera.eye,
                             .count = count_};
     const auto step = [&](const Pipeline& pipeline) {
-      pipeline.bind(frame.commands, frame.bindings);
-      pipeline.push(frame.commands, push);
-      frame.commands.dispatch((count_ + SORT_BLOCK - 1) / SORT_BLOCK, 1, 1);
+      frame.bind(pipeline, push);
+      frame.commands.dispatch(divideUp(count_, std::uint32_t(SORT_BLOCK)), 1, 1);
     };
     step(keys_);
     frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
@@ -53,26 +53,25 @@ class CentroidSort {
 
 class Blend : public Method {
  public:
-  void prepare(const Device& device, const GpuScene& scene, const Target& target,
-               const Parameters& parameters) override {
-    pipeline_ = Pipeline::graphics(device, {.fragmentShader = "blend/blend.frag",
-                                            .colorFormats = {vulkanFormat(target.format())},
-                                            .depthFormat = Target::depthFormat,
-                                            .blends = {straightOver()}});
-    if (parameters.choice("order") == "sorted" && scene.transparentCount() > 0)
-      sort_.emplace(device, memory_, scene);
-    samples_.emplace(device);
+  explicit Blend(const MethodContext& context)
+      : pipeline_(Pipeline::graphics(context.device,
+                                     {.fragmentShader = "blend/blend.frag",
+                                      .colorFormats = {vulkanFormat(context.target.format())},
+                                      .depthFormat = Target::depthFormat,
+                                      .blends = {straightOver()}})),
+        samples_(context.device) {
+    if (context.parameters.choice("order") == "sorted" && context.scene.transparentCount() > 0)
+      sort_.emplace(context.device, context.memory, context.scene);
   }
 
   void record(const Frame& frame) override {
     // In every frame, though the camera may stand still: a moving one would ask for it.
     if (sort_) frame.stage("sort", [&] { sort_->record(frame); });
-    samples_->reset(frame);
+    samples_.reset(frame);
     frame.stage("blend", [&] {
       frame.renderOnTarget([&] {
-        samples_->count(frame, [&] {
-          pipeline_.bind(frame.commands, frame.bindings);
-          pipeline_.push(frame.commands, frame.constants);
+        samples_.count(frame, [&] {
+          frame.bind(pipeline_, frame.constants);
           if (sort_) {
             frame.commands.bindIndexBuffer(sort_->indices().vk(), 0, vk::IndexType::eUint32);
             frame.commands.drawIndexed(frame.scene.transparentCount() * 3, 1, 0, 0, 0);
@@ -84,12 +83,12 @@ class Blend : public Method {
     });
   }
 
-  Status status() override { return {.counters = samples_->counters()}; }
+  Status status() override { return {.counters = samples_.counters()}; }
 
  private:
   Pipeline pipeline_;
   std::optional<CentroidSort> sort_;
-  std::optional<SampleCounter> samples_;
+  SampleCounter samples_;
 };
 
 const RegisterMethod registered({
@@ -100,7 +99,7 @@ const RegisterMethod registered({
     .parameters = {choice("order", {"submission", "sorted"},
                           "submission: as the scene lists triangles; sorted: back to front by "
                           "distance of the centroid, sorted on the device in every frame")},
-    .make = [] { return std::make_unique<Blend>(); },
+    .make = makeMethod<Blend>,
 });
 
 }  // namespace oitlab::blend

@@ -39,14 +39,11 @@ bool sameView(const Camera& a, const Camera& b) {
 
 class CpuReference : public Method {
  public:
-  void prepare(const Device& device, const GpuScene& scene, const Target& target,
-               const Parameters&) override {
-    atlases_ = buildAtlases(scene.scene());
-    pixels_ = Buffer(
-        device, memory_, "picture",
-        std::uint64_t(target.width()) * target.height() * 4 * bytesPerChannel(target.format()),
-        BufferKind::upload);
-  }
+  explicit CpuReference(const MethodContext& context)
+      : atlases_(buildAtlases(context.scene.scene())),
+        pixels_(context.device, context.memory, "picture",
+                context.target.pixels() * 4 * bytesPerChannel(context.target.format()),
+                BufferKind::upload) {}
 
   void record(const Frame& frame) override {
     if (!renderedFor_ || !sameView(*renderedFor_, frame.camera)) renderPicture(frame);
@@ -102,7 +99,7 @@ const RegisterMethod registered({
     .summary = "exact, on the CPU in double precision; its GPU time is only that of the upload",
     .source = "not a published method: ground truth for the tests; counter cpu_ms has its time",
     .exact = true,
-    .make = [] { return std::make_unique<CpuReference>(); },
+    .make = makeMethod<CpuReference>,
 });
 
 }  // namespace oitlab::cpu_reference

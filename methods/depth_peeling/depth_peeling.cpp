@@ -8,8 +8,10 @@
 // layers, the surplus passes are empty draws.
 #include "depth_peeling/peel_types.h"
 
+#include "gpu/counters_buffer.h"
 #include "method/method.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab::depth_peeling {
 
@@ -17,47 +19,26 @@ using Stage = vk::PipelineStageFlagBits2;
 
 class DepthPeeling : public Method {
  public:
-  void prepare(const Device& device, const GpuScene& scene, const Target& target,
-               const Parameters& parameters) override {
-    device_ = &device;
-    pixels_ = std::uint64_t(target.width()) * target.height();
-    triangles_ = scene.transparentCount();
-    dual_ = parameters.choice("mode") == "dual";
-    list_ = dual_ && parameters.choice("back") == "list";
-    wide_ = wantsWideAtomics(parameters.choice("atomics"));
-    layers_ = std::uint32_t(parameters.integer("layers"));
-
-    Defines defines;
-    if (dual_) defines["DUAL"] = "1";
-    if (list_) defines["BACK_LIST"] = "1";
-    if (dual_ && !list_) defines["BACK_BLEND"] = "1";
-    if (wide_) defines["WIDE_ATOMICS"] = "1";
-    const auto geometry = [&](const Defines& with) {
-      return Pipeline::graphics(device, {.fragmentShader = "depth_peeling/peel.frag",
-                                         .defines = with,
-                                         .depthFormat = Target::depthFormat});
-    };
-    peel_ = geometry(defines);
-    Defines resolve = defines;
-    resolve["TARGET_FORMAT"] = formatName(target.format());
-    resolve_ = Pipeline::compute(device, "depth_peeling/resolve.comp", resolve);
-    if (!wide_) {
-      defines["STEP_TIES"] = "1";
-      ties_ = geometry(defines);
-    }
-
+  explicit DepthPeeling(const MethodContext& context)
+      : device_(context.device),
+        memory_(context.memory),
+        triangles_(context.scene.transparentCount()),
+        layers_(std::uint32_t(context.parameters.integer("layers"))),
+        dual_(context.parameters.choice("mode") == "dual"),
+        list_(dual_ && context.parameters.choice("back") == "list"),
+        wide_(wantsWideAtomics(context.parameters.choice("atomics"))),
+        counters_(device_, memory_, "counters", sizeof(PeelCounters)) {
+    makePipelines(formatName(context.target.format()));
+    const std::uint64_t pixels = context.target.pixels();
     for (Buffer& keys : keys_)
-      keys = Buffer(device, memory_, "keys", pixels_ * sizeof(Key) * (dual_ ? 2 : 1));
-    front_ = Buffer(device, memory_, "front colour", pixels_ * sizeof(glm::vec4));
+      keys = Buffer(device_, memory_, "keys", pixels * sizeof(Key) * (dual_ ? 2 : 1));
+    front_ = Buffer(device_, memory_, "front colour", pixels * sizeof(glm::vec4));
     if (dual_ && !list_)
-      back_ = Buffer(device, memory_, "back colour", pixels_ * sizeof(glm::vec4));
+      back_ = Buffer(device_, memory_, "back colour", pixels * sizeof(glm::vec4));
     if (list_) {
-      heads_ = Buffer(device, memory_, "back list heads", pixels_ * sizeof(std::uint32_t));
-      allocateList(2 * pixels_);
+      heads_ = Buffer(device_, memory_, "back list heads", pixels * sizeof(std::uint32_t));
+      allocateList(2 * pixels);
     }
-    counters_ = Buffer(device, memory_, "counters", sizeof(PeelCounters));
-    readback_ =
-        Buffer(device, memory_, "counters readback", sizeof(PeelCounters), BufferKind::readback);
     recorded_ = std::min(firstPasses, neededAtMost());
     allocateDraws();
   }
@@ -78,29 +59,25 @@ class DepthPeeling : public Method {
       fillBuffer(frame.commands, front_, 0);
       if (back_) fillBuffer(frame.commands, back_, 0);
       if (heads_) fillBuffer(frame.commands, heads_, LIST_END);
-      fillBuffer(frame.commands, counters_, 0);
+      fillBuffer(frame.commands, counters_.buffer(), 0);
       frame.commands.copyBuffer(drawTemplate_.vk(), draws_.vk(), vk::BufferCopy(0, 0, drawBytes));
     });
     frame.stage("peel", [&] {
       for (push.pass = 0; push.pass < recorded_; ++push.pass) recordPass(frame, push);
-      frame.barrier(Stage::eFragmentShader, Stage::eComputeShader | Stage::eTransfer);
+      frame.barrier(Stage::eFragmentShader, Stage::eComputeShader);
     });
     frame.stage("resolve", [&] {
-      resolve_.bind(frame.commands, frame.bindings);
-      resolve_.push(frame.commands, push);
+      frame.bind(resolve_, push);
       frame.dispatchPixels();
-      frame.barrier(Stage::eComputeShader, Stage::eTransfer);
-      frame.commands.copyBuffer(counters_.vk(), readback_.vk(),
-                                vk::BufferCopy(0, 0, sizeof(PeelCounters)));
-      frame.commands.copyBuffer(draws_.vk(), drawsReadback_.vk(), vk::BufferCopy(0, 0, drawBytes));
-      frame.barrier(Stage::eTransfer, Stage::eHost);
+      recordReadback(frame.commands, {&counters_, &draws_},
+                     Stage::eFragmentShader | Stage::eComputeShader);
     });
     instrumented_ = frame.instrumented;
   }
 
   Status status() override {
-    const PeelCounters counters = readback_.mapped<PeelCounters>()[0];
-    const auto draws = drawsReadback_.mapped<PassDraw>();
+    const PeelCounters counters = counters_.read<PeelCounters>();
+    const auto draws = draws_.readAll<PassDraw>();
     std::uint32_t asked = 0;  // passes, each by the one before it
     while (asked <= recorded_ && draws[asked].instanceCount > 0) ++asked;
     if (asked > recorded_) {
@@ -114,9 +91,7 @@ class DepthPeeling : public Method {
       return {.recordAgain = true};
     }
     if (list_ && counters.back > capacity_) {
-      // A little more than was counted, so that a slowly turning camera does not grow it every
-      // frame.
-      allocateList(counters.back + counters.back / 16ull);
+      allocateList(withSlack(counters.back));
       return {.recordAgain = true};
     }
     if (counters.broken > 0)
@@ -133,7 +108,7 @@ class DepthPeeling : public Method {
         fail<DeviceError>(
             "depth_peeling: of {} fragments {} were blended and {} left over: {} does not give a "
             "fragment the same depth in every pass",
-            counters.fragments, counters.blended, counters.missed, device_->info().name);
+            counters.fragments, counters.blended, counters.missed, device_.info().name);
       counted_["fragments"] = counters.fragments;
       counted_["missed_fragments"] = counters.missed;
     }
@@ -147,11 +122,31 @@ class DepthPeeling : public Method {
   /// spare for the list, of the 8 that a renderer allows.
   static constexpr std::uint32_t firstPasses = 16;
 
+  void makePipelines(const std::string& targetFormat) {
+    Defines defines;
+    if (dual_) defines["DUAL"] = "1";
+    if (list_) defines["BACK_LIST"] = "1";
+    if (dual_ && !list_) defines["BACK_BLEND"] = "1";
+    if (wide_) defines["WIDE_ATOMICS"] = "1";
+    const auto geometry = [&](const Defines& with) {
+      return Pipeline::graphics(device_, {.fragmentShader = "depth_peeling/peel.frag",
+                                          .defines = with,
+                                          .depthFormat = Target::depthFormat});
+    };
+    peel_ = geometry(defines);
+    Defines resolve = defines;
+    resolve["TARGET_FORMAT"] = targetFormat;
+    resolve_ = Pipeline::compute(device_, "depth_peeling/resolve.comp", resolve);
+    if (wide_) return;
+    defines["STEP_TIES"] = "1";
+    ties_ = geometry(defines);
+  }
+
   bool wantsWideAtomics(const std::string& choice) const {
-    const bool has = device_->info().has("shaderBufferInt64Atomics");
+    const bool has = device_.info().has("shaderBufferInt64Atomics");
     if (choice == "int64" && !has)
       fail<DeviceError>("depth_peeling: {} lacks shaderBufferInt64Atomics; use atomics=int32",
-                        device_->info().name);
+                        device_.info().name);
     return has && choice != "int32";
   }
 
@@ -182,8 +177,7 @@ class DepthPeeling : public Method {
   void draw(const Frame& frame, const Pipeline& pipeline, const PeelPush& push,
             std::uint32_t asked) const {
     frame.renderDepthTested({}, [&] {
-      pipeline.bind(frame.commands, frame.bindings);
-      pipeline.push(frame.commands, push);
+      frame.bind(pipeline, push);
       frame.commands.bindIndexBuffer(frame.scene.transparentIndices().vk(), 0,
                                      vk::IndexType::eUint32);
       frame.commands.drawIndexedIndirect(draws_.vk(), asked * sizeof(PassDraw), 1,
@@ -194,11 +188,10 @@ class DepthPeeling : public Method {
   /// One command for each pass that is recorded, and one for the pass that the last may ask for.
   void allocateDraws() {
     const std::uint64_t bytes = (recorded_ + 1) * sizeof(PassDraw);
-    draws_ = Buffer(*device_, memory_, "pass draws", bytes);
-    drawsReadback_ = Buffer(*device_, memory_, "pass draws readback", bytes, BufferKind::readback);
+    draws_ = CountersBuffer(device_, memory_, "pass draws", bytes);
     std::vector<PassDraw> commands(recorded_ + 1, {.indexCount = 3 * triangles_});
     commands.front().instanceCount = 1;
-    drawTemplate_ = uploadBuffer(*device_, memory_, "pass draws template", commands);
+    drawTemplate_ = uploadBuffer(device_, memory_, "pass draws template", commands);
   }
 
   void allocateList(std::uint64_t nodes) {
@@ -206,21 +199,22 @@ class DepthPeeling : public Method {
       fail<DeviceError>(
           "depth_peeling: {} fragments are more than the 2^32 - 1 that its lists can name", nodes);
     listed_ = Buffer();  // give the old one back first: both may not fit
-    listed_ = Buffer(*device_, memory_, "back list", nodes * sizeof(BackFragment));
+    listed_ = Buffer(device_, memory_, "back list", nodes * sizeof(BackFragment));
     capacity_ = std::uint32_t(nodes);
   }
 
-  const Device* device_ = nullptr;
-  std::uint64_t pixels_ = 0;
-  std::uint32_t triangles_ = 0;
-  std::uint32_t layers_ = 0;  // 0: all
-  bool dual_ = false, list_ = false, wide_ = false, instrumented_ = false;
+  const Device& device_;
+  MemoryLedger& memory_;
+  std::uint32_t triangles_;
+  std::uint32_t layers_;  // 0: all
+  bool dual_, list_, wide_;
+  bool instrumented_ = false;
   std::uint32_t recorded_ = 0;  // passes
   std::uint32_t capacity_ = 0;  // nodes of the back list
   Pipeline peel_, ties_, resolve_;
   std::array<Buffer, 3> keys_;  // in turn: blended, found, cleared
-  Buffer front_, back_, heads_, listed_, counters_, readback_;
-  Buffer draws_, drawTemplate_, drawsReadback_;
+  Buffer front_, back_, heads_, listed_, drawTemplate_;
+  CountersBuffer counters_, draws_;
   std::map<std::string, std::uint64_t> counted_;
 };
 
@@ -240,7 +234,7 @@ const RegisterMethod registered({
          choice("atomics", {"auto", "int64", "int32"},
                 "on keys of depth and primitive id; int32 takes a second pass a layer for the id")},
     .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
-    .make = [] { return std::make_unique<DepthPeeling>(); },
+    .make = makeMethod<DepthPeeling>,
 });
 
 }  // namespace oitlab::depth_peeling

@@ -9,28 +9,14 @@ namespace {
 
 class LocalMemory : public Method {
  public:
-  void prepare(const Device& device, const GpuScene&, const Target& target,
-               const Parameters& parameters) override {
-    passes_ = std::uint32_t(parameters.integer("passes"));
-    const std::int64_t size = parameters.integer("size");
-    pipeline_ = Pipeline::graphics(
-        device, {.vertexShader = "common/fullscreen.vert",
-                 .fragmentShader = "local_memory/local_memory.frag",
-                 .defines = {{"SIZE", fmt::format("{}", size)}},
-                 .colorFormats = {vulkanFormat(target.format())},
-                 .depthFormat = Target::depthFormat,
-                 .depthTest = false,
-                 .blends = {additive()},
-                 .ifRefused = fmt::format("an invocation has an array of {} bytes, which may be "
-                                          "more than the driver allows: lower 'size'",
-                                          16 * size)});
-  }
+  explicit LocalMemory(const MethodContext& context)
+      : passes_(std::uint32_t(context.parameters.integer("passes"))),
+        pipeline_(makePipeline(context)) {}
 
   void record(const Frame& frame) override {
     frame.stage("fill", [&] {
       frame.renderOnTarget([&] {
-        pipeline_.bind(frame.commands, frame.bindings);
-        pipeline_.push(frame.commands, Push{frame.constants, 0});
+        frame.bind(pipeline_, Push{frame.constants, 0});
         for (std::uint32_t pass = 0; pass < passes_; ++pass) frame.drawFullscreen();
       });
     });
@@ -39,7 +25,23 @@ class LocalMemory : public Method {
   Status status() override { return {}; }
 
  private:
-  std::uint32_t passes_ = 0;
+  static Pipeline makePipeline(const MethodContext& context) {
+    const std::int64_t size = context.parameters.integer("size");
+    return Pipeline::graphics(
+        context.device,
+        {.vertexShader = "common/fullscreen.vert",
+         .fragmentShader = "local_memory/local_memory.frag",
+         .defines = {{"SIZE", fmt::format("{}", size)}},
+         .colorFormats = {vulkanFormat(context.target.format())},
+         .depthFormat = Target::depthFormat,
+         .depthTest = false,
+         .blends = {additive()},
+         .ifRefused = fmt::format("an invocation has an array of {} bytes, which may be more than "
+                                  "the driver allows: lower 'size'",
+                                  16 * size)});
+  }
+
+  std::uint32_t passes_;
   Pipeline pipeline_;
 };
 
@@ -50,7 +52,7 @@ const RegisterMethod registered({
     .exact = false,
     .parameters = {integer("size", 64, 1, 1024, "length of the array of vec4", "of 16 bytes"),
                    integer("passes", 64, 1, 1024, "full-screen passes a frame")},
-    .make = [] { return std::make_unique<LocalMemory>(); },
+    .make = makeMethod<LocalMemory>,
 });
 
 }  // namespace

@@ -7,30 +7,23 @@
 //   buffers   what is kept between their steps
 #include "lucid/lucid_types.h"
 
-#include <functional>
-
 #include "lucid/buffers.h"
 #include "lucid/programs.h"
 #include "method/method.h"
 #include "raster/front_end.h"
 #include "util/error.h"
+#include "util/rounding.h"
 
 namespace oitlab::lucid {
 namespace {
 
 using Stage = vk::PipelineStageFlagBits2;
 
-/// Counted items, and a sixteenth more for a camera that moves on.
-std::uint64_t withSlack(std::uint64_t counted) {
-  return counted + counted / 16 + 64;
-}
-
 /// Dispatches a program of as many workgroups as `offset` in `counters` says.
 template <typename Push>
 void dispatchCounted(const Frame& frame, const Pipeline& pipeline, const Push& push,
                      vk::Buffer counters, std::size_t offset) {
-  pipeline.bind(frame.commands, frame.bindings);
-  pipeline.push(frame.commands, push);
+  frame.bind(pipeline, push);
   frame.commands.dispatchIndirect(counters, offset);
 }
 
@@ -38,20 +31,15 @@ void dispatchCounted(const Frame& frame, const Pipeline& pipeline, const Push& p
 
 class Lucid : public Method {
  public:
-  void prepare(const Device& device, const GpuScene& scene, const Target& target,
-               const Parameters& parameters) override {
-    device_ = &device;
-    parameters_ = parameters;
-    frontEnd_ = std::make_unique<raster::FrontEnd>(
-        device, scene, target, memory_,
-        raster::FrontEnd::Options{.backFaceCulling = parameters.flag("backface_culling")});
-    makePrograms_ = [this, &scene, format = formatName(target.format())](bool hasIrregular) {
-      programs_ = Programs(*device_, scene.scene(), scene.opaqueCount() > 0, hasIrregular, format,
-                           parameters_);
-    };
-    makePrograms_(false);
-    buffers_ =
-        std::make_unique<Buffers>(device, memory_, std::uint64_t(frontEnd_->bins()) * HALF_BLOCKS);
+  explicit Lucid(const MethodContext& context)
+      : device_(context.device),
+        scene_(context.scene),
+        targetFormat_(formatName(context.target.format())),
+        parameters_(context.parameters),
+        frontEnd_(device_, scene_, context.target, context.memory,
+                  {.backFaceCulling = parameters_.flag("backface_culling")}),
+        buffers_(device_, context.memory, std::uint64_t(frontEnd_.bins()) * HALF_BLOCKS),
+        programs_(makePrograms(false)) {
     makeRoomForParts();
   }
 
@@ -59,13 +47,13 @@ class Lucid : public Method {
 
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
-    frontEnd_->record(frame, {&buffers_->counters.buffer(), &buffers_->binBlocks});
-    const raster::RasterPush front = frontEnd_->addresses(frame);
+    frontEnd_.record(frame, {&buffers_.counters.buffer(), &buffers_.binBlocks});
+    const raster::RasterPush front = frontEnd_.addresses(frame);
     const auto compute = Stage::eComputeShader;
     frame.stage("blocks", [&] { recordBlocks(frame, front); });
     const BlendPush push = pushOf(frame, front);
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
-      dispatchCounted(frame, pipeline, push, buffers_->counters.vk(), offset);
+      dispatchCounted(frame, pipeline, push, buffers_.counters.vk(), offset);
     };
     // Within a step no barrier parts the programs: their half-blocks are different ones. Long lists
     // come first, since the last to end holds up the frame.
@@ -86,29 +74,29 @@ class Lucid : public Method {
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, push);
     });
-    recordReadback(frame.commands, {&frontEnd_->counters(), &buffers_->counters});
+    recordReadback(frame.commands, {&frontEnd_.counters(), &buffers_.counters});
   }
 
   Status status() override {
-    const LucidCounters& c = buffers_->counters.read<LucidCounters>();
+    const LucidCounters& c = buffers_.counters.read<LucidCounters>();
     bool again = findNeeded(c);
-    if (frontEnd_->grow()) {
+    if (frontEnd_.grow()) {
       makeRoomForParts();
-      if (frontEnd_->hasIrregular() && !programs_.irregular) makePrograms_(true);
+      if (frontEnd_.hasIrregular() && !programs_.irregular) programs_ = makePrograms(true);
       return {.recordAgain = true};
     }
-    if (c.triHalfBlocks > buffers_->listCapacity || c.kept > buffers_->keptCapacity) {
-      const std::uint64_t list = buffers_->listCapacity, kept = buffers_->keptCapacity;
-      buffers_->makeRoomForLists(c.triHalfBlocks > list ? withSlack(c.triHalfBlocks) : list,
-                                 c.kept > kept ? withSlack(c.kept) : kept);
+    if (c.triHalfBlocks > buffers_.listCapacity || c.kept > buffers_.keptCapacity) {
+      const std::uint64_t list = buffers_.listCapacity, kept = buffers_.keptCapacity;
+      buffers_.makeRoomForLists(c.triHalfBlocks > list ? withSlack(c.triHalfBlocks) : list,
+                                c.kept > kept ? withSlack(c.kept) : kept);
       return {.recordAgain = true};
     }
-    if (c.repairJobs > buffers_->repairCapacity) {
-      buffers_->makeRoomForRepairs(withSlack(c.repairJobs));
+    if (c.repairJobs > buffers_.repairCapacity) {
+      buffers_.makeRoomForRepairs(withSlack(c.repairJobs));
       again = true;
     }
-    if (c.deepPixels > buffers_->deepCapacity || c.deepNodes > buffers_->nodeCapacity) {
-      buffers_->makeRoomForDeep(withSlack(c.deepPixels), withSlack(c.deepNodes));
+    if (c.deepPixels > buffers_.deepCapacity || c.deepNodes > buffers_.nodeCapacity) {
+      buffers_.makeRoomForDeep(withSlack(c.deepPixels), withSlack(c.deepNodes));
       again = true;
     } else if (c.unfinished > 0) {
       deepRounds_ *= 2;
@@ -116,31 +104,36 @@ class Lucid : public Method {
     }
     if (again) return {.recordAgain = true};
     const std::uint32_t toBlend = c.triHalfBlocks + c.passedOn;
-    const bool blended = !verifiesLoops(*device_) || c.blended == toBlend;
+    const bool blended = !verifiesLoops(device_) || c.blended == toBlend;
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
           "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
           "long loops early (too many triangles in a bin)",
-          c.walked, c.expected, c.blended, toBlend, device_->info().name);
+          c.walked, c.expected, c.blended, toBlend, device_.info().name);
     if (c.repairedPixels != c.pixelsToRepair)
       fail<DeviceError>("lucid: of {} pixels {} were repaired: {} ends long loops early",
-                        c.pixelsToRepair, c.repairedPixels, device_->info().name);
+                        c.pixelsToRepair, c.repairedPixels, device_.info().name);
     if (c.deepCaptured != c.deepNodes || c.deepBlended != c.deepNodes)
       fail<DeviceError>("lucid: of {} fragments in deep pixels {} were captured and {} blended",
                         c.deepNodes, c.deepCaptured, c.deepBlended);
     Status status;
-    frontEnd_->addCounters(status.counters);
+    frontEnd_.addCounters(status.counters);
     status.counters["fragments"] = c.samples;
     status.counters["half_blocks"] = c.triHalfBlocks;
     status.counters["filter_jobs"] = c.lowLists + c.passedJobs;
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
-    status.counters["scratch_bytes"] = buffers_->scratchBytes();
+    status.counters["scratch_bytes"] = buffers_.scratchBytes();
     return status;
   }
 
  private:
+  Programs makePrograms(bool hasIrregular) const {
+    return {device_,      scene_.scene(), scene_.opaqueCount() > 0,
+            hasIrregular, targetFormat_,  parameters_};
+  }
+
   // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
   // a GPU some microseconds that has nothing to do.
   struct Needed {
@@ -151,7 +144,7 @@ class Lucid : public Method {
   // Whether the last frame lacked a pass.
   bool findNeeded(const LucidCounters& c) {
     const Needed before = needed_;
-    needed_.highBins = needed_.highBins || frontEnd_->counted().highParts > 0;
+    needed_.highBins = needed_.highBins || frontEnd_.counted().highParts > 0;
     needed_.longLists = needed_.longLists || c.highLists > 0;
     needed_.filter = needed_.filter || c.lowLists + c.passedJobs > 0;
     needed_.repair = needed_.repair || c.repairJobs > 0;
@@ -169,17 +162,17 @@ class Lucid : public Method {
                           .entries = front.entries,
                           .parts = front.parts,
                           .rasterCounters = front.counters,
-                          .list = buffers_->list.address(),
-                          .keys = buffers_->keys.address(),
-                          .blocks = buffers_->blocks.address(),
-                          .filterJobs = buffers_->filterJobs.address(),
-                          .binBlocks = buffers_->binBlocks.address(),
-                          .partLists = buffers_->partLists.address(),
-                          .counters = buffers_->counters.address(),
-                          .listCapacity = buffers_->listCapacity,
-                          .keptCapacity = buffers_->keptCapacity};
+                          .list = buffers_.list.address(),
+                          .keys = buffers_.keys.address(),
+                          .blocks = buffers_.blocks.address(),
+                          .filterJobs = buffers_.filterJobs.address(),
+                          .binBlocks = buffers_.binBlocks.address(),
+                          .partLists = buffers_.partLists.address(),
+                          .counters = buffers_.counters.address(),
+                          .listCapacity = buffers_.listCapacity,
+                          .keptCapacity = buffers_.keptCapacity};
     auto run = [&](std::size_t pass, std::size_t offset) {
-      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_->counters().vk(), offset);
+      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_.counters().vk(), offset);
     };
     if (needed_.highBins) run(1, offsetof(RasterCounters, high));
     run(0, offsetof(RasterCounters, low));
@@ -197,15 +190,15 @@ class Lucid : public Method {
     if (parameters_.flag("visualize_errors")) flags |= SHOW_ERRORS;
     return {.mesh = front.mesh,
             .frame = front.frame,
-            .list = buffers_->list.address(),
-            .keys = buffers_->keys.address(),
-            .blocks = buffers_->blocks.address(),
-            .filterJobs = buffers_->filterJobs.address(),
-            .repairs = buffers_->repairs.address(),
-            .counters = buffers_->counters.address(),
-            .halfBlocks = frontEnd_->bins() * HALF_BLOCKS,
+            .list = buffers_.list.address(),
+            .keys = buffers_.keys.address(),
+            .blocks = buffers_.blocks.address(),
+            .filterJobs = buffers_.filterJobs.address(),
+            .repairs = buffers_.repairs.address(),
+            .counters = buffers_.counters.address(),
+            .halfBlocks = frontEnd_.bins() * HALF_BLOCKS,
             .size = {frame.target.width(), frame.target.height()},
-            .repairCapacity = buffers_->repairCapacity,
+            .repairCapacity = buffers_.repairCapacity,
             .alphaThreshold = float(parameters_.real("alpha_threshold")),
             .flags = flags};
   }
@@ -217,21 +210,21 @@ class Lucid : public Method {
                     .list = lucid.list,
                     .repairs = lucid.repairs,
                     .counters = lucid.counters,
-                    .deepPixels = buffers_->deepCapacity > 0 ? buffers_->deepPixels.address() : 0,
-                    .nodes = buffers_->deepCapacity > 0 ? buffers_->nodes.address() : 0,
-                    .repairCapacity = buffers_->repairCapacity,
-                    .deepCapacity = buffers_->deepCapacity,
-                    .nodeCapacity = buffers_->nodeCapacity,
+                    .deepPixels = buffers_.deepCapacity > 0 ? buffers_.deepPixels.address() : 0,
+                    .nodes = buffers_.deepCapacity > 0 ? buffers_.nodes.address() : 0,
+                    .repairCapacity = buffers_.repairCapacity,
+                    .deepCapacity = buffers_.deepCapacity,
+                    .nodeCapacity = buffers_.nodeCapacity,
                     .alphaThreshold = lucid.alphaThreshold,
                     .flags = lucid.flags,
                     .round = 0,
                     .rounds = deepRounds_};
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
-      dispatchCounted(frame, pipeline, push, buffers_->counters.vk(), offset);
+      dispatchCounted(frame, pipeline, push, buffers_.counters.vk(), offset);
     };
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(*programs_.repair, offsetof(LucidCounters, repair));
-    if (buffers_->deepCapacity == 0) return;  // no frame has needed it yet
+    if (buffers_.deepCapacity == 0) return;  // no frame has needed it yet
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(*programs_.deepCapture, offsetof(LucidCounters, deep));
     for (push.round = 0; push.round < push.rounds; ++push.round) {
@@ -240,20 +233,21 @@ class Lucid : public Method {
     }
   }
 
-  void makeRoomForParts() { buffers_->makeRoomForParts(frontEnd_->partCapacity()); }
+  void makeRoomForParts() { buffers_.makeRoomForParts(frontEnd_.partCapacity()); }
 
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
-    frontEnd_->poison(frame.commands, pattern);
-    buffers_->poison(frame.commands, pattern);
+    frontEnd_.poison(frame.commands, pattern);
+    buffers_.poison(frame.commands, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
 
-  const Device* device_ = nullptr;
+  const Device& device_;
+  const GpuScene& scene_;
+  std::string targetFormat_;  // as shaders name it
   Parameters parameters_;
-  std::unique_ptr<raster::FrontEnd> frontEnd_;
-  std::unique_ptr<Buffers> buffers_;
-  std::function<void(bool hasIrregular)> makePrograms_;
+  raster::FrontEnd frontEnd_;
+  Buffers buffers_;
   Programs programs_;
   Needed needed_;
   std::uint32_t deepRounds_ = 1;
@@ -281,7 +275,7 @@ const RegisterMethod registered({
               "drop quads that face away, which no other method does: for the scene table"),
          flag("poison", false, "fill all buffers with rubbish before each frame: a test")},
     .features = {"subgroupSizeControl", "computeFullSubgroups", "subgroupOperations"},
-    .make = [] { return std::make_unique<Lucid>(); },
+    .make = makeMethod<Lucid>,
 });
 
 }  // namespace oitlab::lucid

@@ -35,8 +35,6 @@ class Program {
 /// The programs of shaders/lucid for one device, scene and set of parameters. What the scene has
 /// not is not in them.
 struct Programs {
-  Programs() = default;
-
   /// `hasOpaque`: the scene has opaque triangles. `hasIrregular`: frames have triangles that cannot
   /// be snapped. `device` must outlive this.
   Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,

@@ -8,48 +8,29 @@ namespace oitlab::wboit {
 
 class Wboit : public Method {
  public:
-  void prepare(const Device& device, const GpuScene& scene, const Target& target,
-               const Parameters& parameters) override {
-    using Usage = vk::ImageUsageFlagBits;
-    const auto usage = Usage::eColorAttachment | Usage::eSampled;
-    const auto [width, height] = target.color().extent();
-    const vk::Format sum = parameters.choice("accum_format") == "rgba32f"
-                               ? vk::Format::eR32G32B32A32Sfloat
-                               : vk::Format::eR16G16B16A16Sfloat;
-    accumulated_ = GpuImage(device, memory_, {"accumulated", sum, width, height, 1, usage});
-    revealage_ = GpuImage(device, memory_,
-                          {"revealage", revealageFormat(parameters), width, height, 1, usage});
-    bindings_.emplace(device, scene, target,
-                      std::array<const GpuImage*, 2>{&accumulated_, &revealage_});
-
-    const std::string weight = parameters.choice("weight");
-    const std::string equation = weight == "none" ? "0" : weight.substr(2);
-    paperRange_ = rangeOf(weight);
-    using Factor = vk::BlendFactor;
-    accumulate_ = Pipeline::graphics(
-        device,
-        {.fragmentShader = "wboit/accumulate.frag",
-         .defines = {{"WEIGHT", equation}},
-         .colorFormats = {accumulated_.description().format, revealage_.description().format},
-         .depthFormat = Target::depthFormat,
-         .blends = {additive(), blending(Factor::eZero, Factor::eOneMinusSrcColor)}});
-    composite_ = Pipeline::graphics(device, {.vertexShader = "common/fullscreen.vert",
-                                             .fragmentShader = "wboit/composite.frag",
-                                             .colorFormats = {vulkanFormat(target.format())},
-                                             .depthFormat = Target::depthFormat,
-                                             .depthTest = false,
-                                             .blends = {premultipliedOver()}});
-    samples_.emplace(device);
-    depthScale_ = parameters.real("depth_scale");
-    bounds_ = scene.scene().bounds;
-  }
+  explicit Wboit(const MethodContext& context)
+      : accumulated_(makeImage(context, "accumulated", accumulationFormat(context.parameters))),
+        revealage_(makeImage(context, "revealage", revealageFormat(context.parameters))),
+        bindings_(context.device, context.scene, context.target,
+                  std::array<const GpuImage*, 2>{&accumulated_, &revealage_}),
+        accumulate_(makeAccumulate(context)),
+        composite_(Pipeline::graphics(context.device,
+                                      {.vertexShader = "common/fullscreen.vert",
+                                       .fragmentShader = "wboit/composite.frag",
+                                       .colorFormats = {vulkanFormat(context.target.format())},
+                                       .depthFormat = Target::depthFormat,
+                                       .depthTest = false,
+                                       .blends = {premultipliedOver()}})),
+        samples_(context.device),
+        depthScale_(context.parameters.real("depth_scale")),
+        paperRange_(rangeOf(context.parameters.choice("weight"))) {}
 
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
     using Layout = vk::ImageLayout;
     const WboitPush push = pushFor(frame);
-    samples_->reset(frame);
+    samples_.reset(frame);
     frame.stage("accumulate", [&] {
       for (const GpuImage* image : {&accumulated_, &revealage_})
         image->transition(frame.commands, Layout::eUndefined, Layout::eColorAttachmentOptimal,
@@ -58,9 +39,8 @@ class Wboit : public Method {
       const std::array attachments = {clearedAttachment(accumulated_, {0.0f, 0.0f, 0.0f, 0.0f}),
                                       clearedAttachment(revealage_, {1.0f, 0.0f, 0.0f, 0.0f})};
       frame.renderDepthTested(attachments, [&] {
-        samples_->count(frame, [&] {
-          accumulate_.bind(frame.commands, frame.bindings);
-          accumulate_.push(frame.commands, push);
+        samples_.count(frame, [&] {
+          frame.bind(accumulate_, push);
           frame.drawTransparent();
         });
       });
@@ -72,15 +52,41 @@ class Wboit : public Method {
                           Access::eColorAttachmentWrite, Stage::eFragmentShader,
                           Access::eShaderRead);
       frame.renderOnTarget([&] {
-        composite_.bind(frame.commands, bindings_->set());
-        frame.commands.draw(3, 1, 0, 0);
+        composite_.bind(frame.commands, bindings_.set());
+        frame.drawFullscreen();
       });
     });
   }
 
-  Status status() override { return {.counters = samples_->counters()}; }
+  Status status() override { return {.counters = samples_.counters()}; }
 
  private:
+  static GpuImage makeImage(const MethodContext& context, const char* name, vk::Format format) {
+    using Usage = vk::ImageUsageFlagBits;
+    const auto [width, height] = context.target.color().extent();
+    return {context.device,
+            context.memory,
+            {name, format, width, height, 1, Usage::eColorAttachment | Usage::eSampled}};
+  }
+
+  Pipeline makeAccumulate(const MethodContext& context) const {
+    const std::string& weight = context.parameters.choice("weight");
+    const std::string equation = weight == "none" ? "0" : weight.substr(2);
+    using Factor = vk::BlendFactor;
+    return Pipeline::graphics(
+        context.device,
+        {.fragmentShader = "wboit/accumulate.frag",
+         .defines = {{"WEIGHT", equation}},
+         .colorFormats = {accumulated_.description().format, revealage_.description().format},
+         .depthFormat = Target::depthFormat,
+         .blends = {additive(), blending(Factor::eZero, Factor::eOneMinusSrcColor)}});
+  }
+
+  static vk::Format accumulationFormat(const Parameters& parameters) {
+    return parameters.choice("accum_format") == "rgba32f" ? vk::Format::eR32G32B32A32Sfloat
+                                                          : vk::Format::eR16G16B16A16Sfloat;
+  }
+
   static vk::Format revealageFormat(const Parameters& parameters) {
     const std::string& name = parameters.choice("reveal_format");
     return name == "r8"     ? vk::Format::eR8Unorm
@@ -97,29 +103,17 @@ class Wboit : public Method {
 
   /// The depth range of the scene from this camera, and the scale that takes it to the paper's.
   WboitPush pushFor(const Frame& frame) const {
-    const glm::vec3 forward = glm::normalize(frame.camera.target - frame.camera.eye);
-    float nearest = std::numeric_limits<float>::max(), farthest = 0.0f;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 point = {corner & 1 ? bounds_.max.x : bounds_.min.x,
-                               corner & 2 ? bounds_.max.y : bounds_.min.y,
-                               corner & 4 ? bounds_.max.z : bounds_.min.z};
-      const float depth = glm::dot(point - frame.camera.eye, forward);
-      nearest = std::min(nearest, depth);
-      farthest = std::max(farthest, depth);
-    }
-    nearest = std::max(nearest, frame.camera.near);
-    farthest = std::max(farthest, 1.001f * nearest);
+    const auto [nearest, farthest] = depthRange(frame.camera, frame.scene.scene().bounds);
     const float scale = depthScale_ > 0.0 ? float(depthScale_) : paperRange_ / farthest;
     return {frame.constants, scale, nearest, farthest};
   }
 
   GpuImage accumulated_, revealage_;
-  std::optional<FrameBindings> bindings_;
+  FrameBindings bindings_;
   Pipeline accumulate_, composite_;
-  std::optional<SampleCounter> samples_;
-  double depthScale_ = 0;
-  float paperRange_ = 0;
-  Bounds bounds_;
+  SampleCounter samples_;
+  double depthScale_;
+  float paperRange_;
 };
 
 const RegisterMethod registered({
@@ -137,7 +131,7 @@ const RegisterMethod registered({
                    choice("reveal_format", {"r16f", "r8", "r32f"},
                           "of the product of (1 - alpha); the paper has r8 beside r16f")},
     .features = {"independentBlend"},
-    .make = [] { return std::make_unique<Wboit>(); },
+    .make = makeMethod<Wboit>,
 });
 
 }  // namespace oitlab::wboit

@@ -20,7 +20,7 @@ void recordAndSubmit(benchmark::State& state, const char* sceneName, const char*
     const Target target(device, 64, 36, TargetFormat::rgba16f);
     Renderer renderer(device, gpuScene, target);
     const MethodInfo& info = findMethod(methodName);
-    const auto method = renderer.prepare(info, Parameters(info.parameters, {}, info.name));
+    const auto method = renderer.make(info, Parameters(info.parameters, {}, info.name));
     const Camera camera = findView(scene, "default");
     renderer.render(*method, camera);
     for (auto _ : state) state.SetIterationTime(renderer.render(*method, camera).cpuMs * 1e-3);

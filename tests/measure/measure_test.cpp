@@ -46,7 +46,6 @@ constexpr int stages = -1;
 class BlockTeller : public Method {
  public:
   explicit BlockTeller(std::function<void(int block)> tell) : tell_(std::move(tell)) {}
-  void prepare(const Device&, const GpuScene&, const Target&, const Parameters&) override {}
   void record(const Frame& frame) override {
     if (frame.instrumented) {
       frame.stage("nothing", [] {});

@@ -183,10 +183,10 @@ TEST_F(Methods, PipelinesAreMadeOnce) {
   RenderFixture half(randomSoup(1, 10), 8, 8, {}, TargetFormat::rgba16f);
   for (const auto& [name, info] : methods()) {
     if (!info.missing(sharedDevice().info()).empty()) continue;
-    fixture.prepare(name);
+    fixture.make(name);
     const std::size_t made = pipelines.size();
-    fixture.prepare(name);
-    other.prepare(name);
+    fixture.make(name);
+    other.make(name);
     EXPECT_EQ(pipelines.size(), made) << name;
   }
   // lucid makes its programs when a frame needs them.
@@ -208,7 +208,7 @@ TEST_F(Methods, PipelinesAreMadeOnce) {
 TEST_F(Methods, MemoryIsListedByBuffer) {
   RenderFixture fixture(generated("planes"), 64, 32);
   const MethodInfo& info = findMethod("reference");
-  const auto method = fixture.renderer().prepare(
+  const auto method = fixture.renderer().make(
       info, Parameters(info.parameters, {{"initial_depth", "2"}}, info.name));
   const auto& buffers = method->memory().byName();
   EXPECT_EQ(buffers.at("list heads"), 64u * 32 * 4);

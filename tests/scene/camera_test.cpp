@@ -70,6 +70,26 @@ TEST(Camera, OrbitShowsWhatPlusYWouldShow) {
   expectNear(orbit, project(camera, point));
 }
 
+TEST(Camera, DepthRangeIsThatOfTheCornersBeyondTheNearPlane) {
+  Camera camera;
+  camera.eye = {0, 0, 10};
+  camera.target = {0, 0, 0};
+  camera.near = 0.5f;
+  const Bounds bounds{{-1, -2, -3}, {1, 2, 3}};
+  const DepthRange outside = depthRange(camera, bounds);
+  EXPECT_FLOAT_EQ(outside.nearest, 7);
+  EXPECT_FLOAT_EQ(outside.farthest, 13);
+  camera.eye = {0, 0, 1};  // within the bounds: the near plane is the nearest
+  const DepthRange within = depthRange(camera, bounds);
+  EXPECT_FLOAT_EQ(within.nearest, 0.5f);
+  EXPECT_FLOAT_EQ(within.farthest, 4);
+  camera.target = {0, 0, 20};  // looks away: still a range that can be divided by
+  camera.eye = {0, 0, 10};
+  const DepthRange behind = depthRange(camera, bounds);
+  EXPECT_FLOAT_EQ(behind.nearest, 0.5f);
+  EXPECT_GT(behind.farthest, behind.nearest);
+}
+
 TEST(Camera, OverviewLooksAtTheCentreFromTwiceTheRadius) {
   const Camera camera = overviewCamera(kBounds);
   expectNear(camera.target, {1, 0, -1});

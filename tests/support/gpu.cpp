@@ -36,13 +36,13 @@ RenderFixture::RenderFixture(Scene scene, std::uint32_t width, std::uint32_t hei
 RenderFixture::Result RenderFixture::render(const std::string& name,
                                             const std::map<std::string, std::string>& parameters,
                                             std::optional<Camera> camera) {
-  return render(*prepare(name, parameters), camera.value_or(defaultView()));
+  return render(*make(name, parameters), camera.value_or(defaultView()));
 }
 
-std::unique_ptr<Method> RenderFixture::prepare(
-    const std::string& name, const std::map<std::string, std::string>& parameters) {
+std::unique_ptr<Method> RenderFixture::make(const std::string& name,
+                                            const std::map<std::string, std::string>& parameters) {
   const MethodInfo& info = findMethod(name);
-  return renderer_.prepare(info, Parameters(info.parameters, parameters, name));
+  return renderer_.make(info, Parameters(info.parameters, parameters, name));
 }
 
 RenderFixture::Result RenderFixture::render(Method& method, const Camera& camera,

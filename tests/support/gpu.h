@@ -41,8 +41,8 @@ class RenderFixture {
                 std::optional<Camera> camera = {});
 
   /// For several frames with one method: it keeps what the earlier ones made it grow.
-  std::unique_ptr<Method> prepare(const std::string& method,
-                                  const std::map<std::string, std::string>& parameters = {});
+  std::unique_ptr<Method> make(const std::string& method,
+                               const std::map<std::string, std::string>& parameters = {});
   Result render(Method& method, const Camera& camera, bool instrumented = true);
 
   Renderer& renderer() { return renderer_; }

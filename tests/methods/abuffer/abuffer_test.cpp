@@ -32,7 +32,7 @@ void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
   SCOPED_TRACE(nameOf(settings));
   const MethodInfo& info = findMethod("abuffer");
   Renderer& renderer = fixture.renderer();
-  const auto method = renderer.prepare(info, Parameters(info.parameters, settings, info.name));
+  const auto method = renderer.make(info, Parameters(info.parameters, settings, info.name));
   FrameResult frame;
   for (const bool instrumented : {false, true}) {
     frame = renderer.render(*method, fixture.defaultView(), instrumented);
@@ -319,7 +319,7 @@ TEST_F(Abuffer, OnlyTheMaskInUseTakesMemory) {
   const MethodInfo& info = findMethod("abuffer");
   const auto buffersOf = [&](const Settings& settings) {
     const auto method =
-        fixture.renderer().prepare(info, Parameters(info.parameters, settings, info.name));
+        fixture.renderer().make(info, Parameters(info.parameters, settings, info.name));
     return method->memory().byName();
   };
   const auto bma = buffersOf({{"initial_depth", "2"}});

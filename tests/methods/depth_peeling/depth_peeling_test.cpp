@@ -204,7 +204,7 @@ TEST_F(DepthPeeling, FindsTheNumberOfPasses) {
   const auto exact = fixture.render("reference");
   for (const char* mode : {"front_to_back", "dual"}) {
     const MethodInfo& info = findMethod("depth_peeling");
-    const auto method = fixture.renderer().prepare(
+    const auto method = fixture.renderer().make(
         info, Parameters(info.parameters, {{"mode", mode}, {"atomics", "int64"}}, info.name));
     const std::uint64_t passes = std::string(mode) == "dual" ? 151 : 301;
     const auto renderFront = [&] {

@@ -29,8 +29,8 @@ TEST_F(LucidFrames, AMethodThatMovesOnMakesTheImagesOfFreshOnes) {
        {loadScene({"whiteoak", {}, 0.02f}), loadScene({"hairball", {}, 0.02f}), opaque}) {
     SCOPED_TRACE(scene.name);
     RenderFixture fixture(scene, 100, 60);
-    const auto method = fixture.prepare("lucid", {{"depth_filter", "1"}});
-    const auto plain = fixture.prepare("lucid", {{"depth_filter", "1"}});
+    const auto method = fixture.make("lucid", {{"depth_filter", "1"}});
+    const auto plain = fixture.make("lucid", {{"depth_filter", "1"}});
     int recordings = 0, frame = 0;
     for (const Camera& camera : journey(scene)) {
       SCOPED_TRACE(fmt::format("frame {}", frame++));
@@ -54,7 +54,7 @@ TEST_F(LucidFrames, AMethodThatMovesOnMakesTheImagesOfFreshOnes) {
 // Deep pixels come and go: the lists of the last frame are not those of this one.
 TEST_F(LucidFrames, DeepPixelsComeAndGo) {
   RenderFixture fixture(layers(2500, 1.0f, 0.3f, 0.02f), 10, 6);
-  const auto method = fixture.prepare("lucid");
+  const auto method = fixture.make("lucid");
   Camera away = fixture.defaultView();
   away.target.z = 2.0f;
   const auto full = fixture.render(*method, fixture.defaultView());

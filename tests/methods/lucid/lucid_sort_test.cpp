@@ -53,8 +53,7 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
     push.filterJobs = jobBuffer.address();
     push.counters = counterBuffer.address();
     push.halfBlocks = std::uint32_t(blocks.size());
-    pipeline.bind(commands);
-    pipeline.push(commands, push);
+    pipeline.bind(commands, nullptr, push);
     commands.dispatch(std::uint32_t(lists.size()), 1, 1);
     memoryBarrier(commands, Stage::eComputeShader, Stage::eTransfer);
     commands.copyBuffer(keyBuffer.vk(), back.vk(), vk::BufferCopy(0, 0, bytes));

@@ -7,35 +7,33 @@ namespace oitlab::sum_of_layers {
 
 class SumOfLayers : public Method {
  public:
-  void prepare(const Device& device, const GpuScene&, const Target& target,
-               const Parameters& parameters) override {
-    pipeline_ = Pipeline::graphics(device, {.fragmentShader = "sum_of_layers/sum.frag",
-                                            .colorFormats = {vulkanFormat(target.format())},
-                                            .depthFormat = Target::depthFormat,
-                                            .blends = {additive()}});
-    strength_ = float(parameters.real("strength"));
-    samples_.emplace(device);
-  }
+  explicit SumOfLayers(const MethodContext& context)
+      : strength_(float(context.parameters.real("strength"))),
+        pipeline_(Pipeline::graphics(context.device,
+                                     {.fragmentShader = "sum_of_layers/sum.frag",
+                                      .colorFormats = {vulkanFormat(context.target.format())},
+                                      .depthFormat = Target::depthFormat,
+                                      .blends = {additive()}})),
+        samples_(context.device) {}
 
   void record(const Frame& frame) override {
-    samples_->reset(frame);
+    samples_.reset(frame);
     frame.stage("sum", [&] {
       frame.renderOnTarget([&] {
-        samples_->count(frame, [&] {
-          pipeline_.bind(frame.commands, frame.bindings);
-          pipeline_.push(frame.commands, SumPush{frame.constants, strength_});
+        samples_.count(frame, [&] {
+          frame.bind(pipeline_, SumPush{frame.constants, strength_});
           frame.drawTransparent();
         });
       });
     });
   }
 
-  Status status() override { return {.counters = samples_->counters()}; }
+  Status status() override { return {.counters = samples_.counters()}; }
 
  private:
-  float strength_ = 0;
+  float strength_;
   Pipeline pipeline_;
-  std::optional<SampleCounter> samples_;
+  SampleCounter samples_;
 };
 
 const RegisterMethod registered({
@@ -44,7 +42,7 @@ const RegisterMethod registered({
     .source = "methods/README.md",
     .exact = false,
     .parameters = {real("strength", 1.0, 0.0, 4.0, "factor of each layer")},
-    .make = [] { return std::make_unique<SumOfLayers>(); },
+    .make = makeMethod<SumOfLayers>,
 });
 
 }  // namespace oitlab::sum_of_layers
