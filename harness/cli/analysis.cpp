@@ -5,8 +5,8 @@
 namespace oitlab {
 namespace {
 
-/// The verbs that the Python package answers, options, --help and errors included: they are written
-/// there once. Its exit codes are ours.
+/// Verbs that the Python package implements, with their options, --help and errors. Its exit codes
+/// are those of the program.
 struct AnalysisVerb {
   const char* name;
   const char* summary;
@@ -37,7 +37,7 @@ void addAnalysis(CLI::App& program, Action& action) {
   for (const auto& [name, summary] : analysisVerbs) {
     CLI::App* verb = program.add_subcommand(name, summary);
     verb->set_help_flag();
-    verb->prefix_command();  // all that follows goes on as it is
+    verb->prefix_command();  // the remaining arguments are passed on unchanged
     verb->callback([=, &action, name = std::string(name)] {
       action = [=] { return analyse(name, verb->remaining()); };
     });

@@ -6,13 +6,13 @@
 
 namespace oitlab {
 
-/// What the chosen verb does; returns the exit code.
+/// Runs the chosen verb and returns the exit code.
 using Action = std::function<int()>;
 
 /// Exit codes (docs/design.md, "Errors").
 enum ExitCode { exitDone = 0, exitSomeFailed = 1, exitBadInput = 2, exitNoDevice = 3 };
 
-// Each adds its verb to the program and sets `action` when the verb is given.
+// Each function adds a verb to the program, and sets `action` if the verb is given.
 void addInfo(CLI::App& program, Action& action);
 void addList(CLI::App& program, Action& action);
 void addScene(CLI::App& program, Action& action);

@@ -23,7 +23,7 @@ int compare(const CompareOptions& options) {
   const Comparison c = compareImages(image, reference);
   if (!options.map.empty()) {
     const Plane<float> errors = errorPlane(image, reference, metric);
-    // By default the largest error is the brightest colour; equal images have a scale all the same.
+    // By default the largest error has the brightest colour. Equal images need a scale too.
     const float scale = options.mapScale > 0 ? options.mapScale : largestFinite(errors, 1.0f / 255);
     writeMap(options.map, errors, scale);
   }

@@ -40,7 +40,7 @@ Plane<float> depthPlane(const DepthComplexity& depth) {
   return plane;
 }
 
-/// For where no Python draws it: a line for each count that a pixel has.
+/// The histogram as text, one line per count, for machines without the Python packages.
 std::string depthHistogramText(const DepthComplexity& depth) {
   std::string text = "fragments pixels\n";
   for (std::size_t n = 0; n < depth.histogram.size(); ++n)
@@ -48,7 +48,7 @@ std::string depthHistogramText(const DepthComplexity& depth) {
   return text;
 }
 
-/// Drawn by the analysis, which has the plotting; returns the file that was written.
+/// Draws the histogram with the Python package. Returns the file that was written.
 std::filesystem::path writeDepthHistogram(const std::filesystem::path& path,
                                           const DepthComplexity& depth,
                                           const nlohmann::json& result) {

@@ -6,7 +6,7 @@
 
 namespace oitlab {
 
-/// --device, --validation and --shader-printf, alike for every verb that opens a device.
+/// Adds --device, --validation and --shader-printf, which all verbs that open a device have.
 inline void addDeviceOptions(CLI::App& verb, Device::Options& options) {
   verb.add_option("--device", options.index,
                   "Device number as `oitlab info` lists them (default: a GPU if there is one)")

@@ -7,7 +7,7 @@
 namespace oitlab {
 namespace {
 
-/// CLI11 says what it did not expect; a reader wants to know what was meant.
+/// CLI11 says what it did not expect. This adds a suggestion of what was meant.
 std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   std::string message = error.what();
   const CLI::App* verb = &program;
@@ -16,7 +16,7 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   for (const CLI::App* child : verb->get_subcommands({})) names.push_back(child->get_name());
   for (const CLI::Option* option : verb->get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  // A misspelt option leaves its value over too; the first word is the one to mend.
+  // After a misspelt option its value is unexpected too; the first word is the mistake.
   if (const auto extras = verb->remaining(true); !extras.empty())
     message =
         fmt::format("'{}' is not known here{}", extras.front(), didYouMean(extras.front(), names));

@@ -23,7 +23,7 @@ struct RenderOptions {
   Device::Options device;
 };
 
-/// "name=value" pairs; a name given twice is a mistake that should not pass in silence.
+/// Parses "name=value" pairs. A name that is given twice is an error.
 std::map<std::string, std::string> parseSettings(const std::vector<std::string>& settings) {
   std::map<std::string, std::string> given;
   for (const std::string& setting : settings) {
@@ -36,11 +36,11 @@ std::map<std::string, std::string> parseSettings(const std::vector<std::string>&
   return given;
 }
 
-/// A few timed frames: enough for a first look. Figures to quote come from `oitlab run`.
+/// The median time of a few frames, for a first look. `oitlab run` measures properly.
 double quickFrameTime(Renderer& renderer, Method& method, const Camera& camera) {
   std::vector<double> ms;
   const auto start = std::chrono::steady_clock::now();
-  renderer.render(method, camera);  // grows memory, and so on
+  renderer.render(method, camera);  // the first frame may enlarge buffers
   do {
     if (const auto frame = renderer.render(method, camera).frameMs) ms.push_back(*frame);
   } while (ms.size() < 5 && std::chrono::steady_clock::now() - start < std::chrono::seconds(2));
@@ -50,7 +50,7 @@ double quickFrameTime(Renderer& renderer, Method& method, const Camera& camera) 
 }
 
 int render(const RenderOptions& options) {
-  // Names and values are checked before anything slow begins.
+  // Names and values are checked before slow work starts.
   const MethodInfo& info = findMethod(options.method);
   const Parameters parameters(info.parameters, parseSettings(options.settings), info.name);
   const TargetFormat format = parseFormat(options.format);

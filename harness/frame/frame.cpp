@@ -62,7 +62,7 @@ FrameTimer::Reading FrameTimer::read() {
   Reading reading;
   reading.frameMs = between(0, stamps.size() - 1);
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    // A stage of no ticks is possible (nothing to do): it counts as 0, not as an error.
+    // A stage with nothing to do may take no ticks: it counts as 0, not as an error.
     const double ms = between(1 + 2 * i, 2 + 2 * i).value_or(0.0);
     auto same = std::find_if(reading.stageMs.begin(), reading.stageMs.end(),
                              [&](const auto& stage) { return stage.first == names_[i]; });

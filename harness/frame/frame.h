@@ -14,8 +14,8 @@
 
 namespace oitlab {
 
-/// GPU timestamps of one frame: both ends of the frame, and of each stage when they are wanted.
-/// One frame is in flight at a time.
+/// GPU timestamps of one frame: at its start and end and, if asked for, at the start and end of
+/// each stage. One frame is in flight at a time.
 class FrameTimer {
  public:
   static constexpr std::uint32_t maxStages = 32;
@@ -24,9 +24,9 @@ class FrameTimer {
 
   struct Reading {
     std::optional<double>
-        frameMs;  ///< empty when the delta was zero or negative: a rejected sample
+        frameMs;  ///< empty when the difference was zero or negative: a rejected sample
     std::vector<std::pair<std::string, double>>
-        stageMs;  ///< in recording order; equal names summed
+        stageMs;  ///< in recording order; stages of the same name are summed
   };
 
   void begin(const Commands& commands, bool stages);
@@ -34,11 +34,12 @@ class FrameTimer {
   void beginStage(const Commands& commands, const std::string& name);
   void endStage(const Commands& commands);
 
-  /// Once the device is done with the frame.
+  /// Call it once the device has finished the frame.
   Reading read();
 
-  /// Ticks between two raw timestamps of which only `validBits` count, or nothing when zero, or
-  /// when the difference is more than half the counter's range: then time went backwards.
+  /// Ticks between two raw timestamps, of which only the low `validBits` are valid. Empty when the
+  /// difference is zero, or more than half the counter's range, which means that time went
+  /// backwards.
   static std::optional<std::uint64_t> ticksBetween(std::uint64_t begin, std::uint64_t end,
                                                    std::uint32_t validBits);
 
@@ -52,7 +53,7 @@ class FrameTimer {
   std::vector<std::string> names_;
 };
 
-/// What a method records into: one frame, after the opaque pass.
+/// One frame after the opaque pass: what a method records its commands into.
 struct Frame {
   const Device& device;
   const Commands& commands;
@@ -61,21 +62,21 @@ struct Frame {
   const Camera& camera;
   vk::DescriptorSet bindings;  ///< set 0 of every pipeline
   std::uint64_t constants;     ///< address of the FrameConstants
-  bool instrumented;           ///< a labelled run: stages are timed, counters may cost time
+  bool instrumented;           ///< stages are timed, and counters may cost time
   FrameTimer& timer;
   std::function<void(std::uint32_t part)> fillTarget = {};  ///< see finishTarget()
 
-  /// For methods that say so (Method::finishesTarget), part = 0, 1, ... targetParts - 1 in turn:
-  /// fills a part of the target with the background, if that is still to be done, by a compute
-  /// shader, beside which short dispatches can run. Behind the last the method has a barrier
-  /// between compute shaders before it touches the target.
+  /// Only for methods whose finishesTarget() is true. They call it for part = 0, 1, ...
+  /// targetParts - 1 in turn. It fills one part of the target with the background, if the opaque
+  /// pass has not done so. It is a compute shader, and short dispatches can run beside it. After
+  /// the last part the method needs a barrier between compute shaders before it touches the target.
   static constexpr std::uint32_t targetParts = 2;
   void finishTarget(std::uint32_t part) const {
     if (fillTarget) fillTarget(part);
   }
 
-  /// Brackets a stage: a row in the results, and a label in a capture. Outside instrumented frames
-  /// no timestamps are recorded, since they change what they time.
+  /// Records a stage: a row in the results, and a label in a capture of the frame. Timestamps are
+  /// only written in instrumented frames, because they change the time that they measure.
   template <typename Record>
   void stage(const std::string& name, Record&& record) const {
     const DebugLabel label(device, commands, name);
@@ -91,17 +92,18 @@ struct Frame {
     pipeline.bind(commands, bindings, push);
   }
 
-  /// Makes all writes before it visible to everything after it within `from` -> `to`.
+  /// Makes all writes of the stages `from` before it visible to the stages `to` after it.
   void barrier(vk::PipelineStageFlags2 from, vk::PipelineStageFlags2 to) const;
 
-  /// A render pass on the target's colour (loaded), tested against the opaque depth (read-only).
+  /// A render pass on the target's colour, which is loaded, tested against the opaque depth, which
+  /// is read-only.
   template <typename Draw>
   void renderOnTarget(Draw&& draw) const {
     renderDepthTested(std::array{targetAttachment()}, std::forward<Draw>(draw));
   }
 
-  /// A render pass on attachments of the method's own, or on none (for captures), tested against
-  /// the opaque depth.
+  /// A render pass on the method's own attachments, or on none (for shaders that only store to
+  /// buffers), tested against the opaque depth.
   template <typename Draw>
   void renderDepthTested(std::span<const vk::RenderingAttachmentInfo> colors, Draw&& draw) const {
     beginRendering(colors);
@@ -109,9 +111,9 @@ struct Frame {
     commands.endRendering();
   }
 
-  /// A render pass without colours on a depth-stencil image of the method's own, which has one or
-  /// both of the aspects and is in depthStencilAttachmentOptimal. `load` eClear begins with 0 in
-  /// both: infinitely far, nothing counted.
+  /// A render pass without colour on the method's own depth-stencil image. The image has one or
+  /// both of the aspects and is in depthStencilAttachmentOptimal. With `load` eClear both start at
+  /// 0: a depth that is infinitely far, and a count of zero.
   template <typename Draw>
   void renderOnDepthStencil(const GpuImage& image, vk::AttachmentLoadOp load, Draw&& draw) const {
     beginDepthStencil(image, load);
@@ -125,7 +127,7 @@ struct Frame {
   /// Draws all transparent triangles in submission order with the bound pipeline.
   void drawTransparent() const;
 
-  /// Dispatches a compute shader with one invocation a pixel, in groups of 8x8.
+  /// Dispatches a compute shader with one invocation per pixel, in workgroups of 8x8.
   void dispatchPixels() const;
 
  private:
@@ -135,7 +137,7 @@ struct Frame {
   void begin(const vk::RenderingInfo& info) const;
 };
 
-/// A method's own image as an attachment that begins with `value`; in colorAttachmentOptimal.
+/// A method's own image, in colorAttachmentOptimal, as an attachment that is cleared to `value`.
 vk::RenderingAttachmentInfo clearedAttachment(const GpuImage& image, std::array<float, 4> value);
 
 }  // namespace oitlab

@@ -8,7 +8,7 @@
 namespace oitlab {
 namespace {
 
-/// Fisher-Yates with our own generator: the standard library's shuffle differs between vendors.
+/// Fisher-Yates with our own generator, because std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::uint32_t>& items, std::uint64_t seed) {
   Pcg32 random(seed);
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.next() % i]);
@@ -22,7 +22,7 @@ std::vector<std::uint32_t> indicesOf(const Scene& scene, const std::vector<std::
   return indices;
 }
 
-/// The atlas in the device's memory; a single white texel where a scene has no such textures, so
+/// The atlas in device memory. Where a scene has no such textures it is a single white texel, so
 /// that the descriptor is always valid.
 GpuImage uploadAtlas(const Device& device, MemoryLedger& ledger, const Atlas& atlas,
                      const std::string& name) {
@@ -42,7 +42,7 @@ GpuImage uploadAtlas(const Device& device, MemoryLedger& ledger, const Atlas& at
     description.levels = std::uint32_t(atlas.levels.size());
     if (compressed)
       description.format = atlas.alpha ? vk::Format::eBc3SrgbBlock : vk::Format::eBc1RgbSrgbBlock;
-    // Without BC support the same texels are uploaded decoded, so that the image stays the same.
+    // On devices without BC formats the same texels are uploaded decoded, so that images are equal.
     for (std::size_t i = 0; i < atlas.levels.size() && !compressed; ++i)
       decoded.push_back(decodeAtlasLevel(atlas, i));
     for (std::size_t i = 0; i < atlas.levels.size(); ++i) {

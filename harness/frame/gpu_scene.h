@@ -7,11 +7,12 @@
 
 namespace oitlab {
 
-/// A scene in device memory, split into what the opaque pass draws and what methods blend.
+/// A scene in device memory, split into the triangles that the opaque pass draws and those that
+/// methods blend.
 class GpuScene {
  public:
   /// Uploads `scene`, which must outlive this. With `shuffleSeed` the triangles are submitted in a
-  /// random order (their primitive ids stay): no exact method may show a difference.
+  /// random order and keep their primitive ids: the image of an exact method must not change.
   GpuScene(const Device& device, const Scene& scene, std::optional<std::uint64_t> shuffleSeed = {});
 
   const Scene& scene() const { return scene_; }

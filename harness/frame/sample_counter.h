@@ -4,9 +4,9 @@
 
 namespace oitlab {
 
-/// Counts the fragments of draws that pass the depth test and are not discarded, for methods that
-/// have no count of their own: a precise occlusion query around the draws of instrumented frames,
-/// since it may cost time. Without the feature there is no count.
+/// Counts the fragments that pass the depth test and are not discarded, for methods that do not
+/// count fragments themselves. It is a precise occlusion query. Because a query may cost time, only
+/// instrumented frames have one. A device without occlusionQueryPrecise gives no count.
 class SampleCounter {
  public:
   explicit SampleCounter(const Device& device) {
@@ -14,13 +14,13 @@ class SampleCounter {
       query_ = vk::raii::QueryPool(device.vk(), {{}, vk::QueryType::eOcclusion, 1});
   }
 
-  /// Before the render pass that counts.
+  /// Call it before the render pass whose fragments are counted.
   void reset(const Frame& frame) {
     active_ = frame.instrumented && *query_;
     if (active_) frame.commands.resetQueryPool(*query_, 0, 1);
   }
 
-  /// Within the render pass, around its draws.
+  /// Call it within the render pass; `draw` records the draws.
   template <typename Draw>
   void count(const Frame& frame, Draw&& draw) {
     if (active_) frame.commands.beginQuery(*query_, 0, vk::QueryControlFlagBits::ePrecise);
@@ -28,7 +28,8 @@ class SampleCounter {
     if (active_) frame.commands.endQuery(*query_, 0);
   }
 
-  /// {"fragments": N} of the last instrumented frame, once the device is done; empty before.
+  /// {"fragments": N} of the last instrumented frame, once the device has finished it. Empty before
+  /// the first.
   const std::map<std::string, std::uint64_t>& counters() {
     if (active_) {
       const auto [result, samples] = query_.getResult<std::uint64_t>(

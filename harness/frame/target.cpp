@@ -144,7 +144,7 @@ FrameBindings::FrameBindings(const Device& device, const GpuScene& scene, const 
       vk::DescriptorImageInfo(*depthSampler_, target.depth().view(),
                               vk::ImageLayout::eDepthStencilReadOnlyOptimal),
   };
-  // Every element must be valid: the ones that the method does not use are an atlas.
+  // Every element must be valid, so elements that the method does not use refer to an atlas.
   std::array<vk::DescriptorImageInfo, Device::methodImageCount> own;
   for (std::size_t i = 0; i < own.size(); ++i)
     own[i] = vk::DescriptorImageInfo(

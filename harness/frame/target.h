@@ -10,22 +10,24 @@ namespace oitlab {
 
 class GpuScene;
 
-/// Pixel formats of the colour target: linear values in each.
+/// Pixel formats of the colour target. All of them hold linear values.
 enum class TargetFormat { rgba16f, rgba8, rgba32f };
 
-/// "rgba16f" and so on. parse throws InputError with the names there are.
+/// The name of a format, such as "rgba16f", and back. parseFormat() throws InputError with the list
+/// of names.
 std::string formatName(TargetFormat format);
 TargetFormat parseFormat(const std::string& name);
 vk::Format vulkanFormat(TargetFormat format);
 
-/// Throws InputError when a side is 0 or beyond what `device` can make.
+/// Throws InputError when a side is 0 or larger than `device` allows.
 void checkTargetSize(const DeviceInfo& device, std::uint32_t width, std::uint32_t height);
 
-/// The images that a frame is made in: the colour (always in layout GENERAL, read and written by
-/// attachments and storage alike) and the opaque depth (reversed, D32).
+/// The images that a frame is rendered to. The colour is always in layout GENERAL and is used both
+/// as an attachment and as a storage image. The depth is that of the opaque surfaces: reversed,
+/// D32.
 class Target {
  public:
-  /// Throws as checkTargetSize(), and DeviceError when memory is short.
+  /// Throws what checkTargetSize() throws, and DeviceError when memory is short.
   Target(const Device& device, std::uint32_t width, std::uint32_t height, TargetFormat format);
 
   std::uint32_t width() const { return color_.description().width; }
@@ -38,8 +40,9 @@ class Target {
   const MemoryLedger& memory() const { return memory_; }
   static constexpr vk::Format depthFormat = vk::Format::eD32Sfloat;
 
-  /// Reads the colour back: the bytes as stored, and as floats. Not during a measurement.
+  /// Reads the colour back as the bytes that are stored. Not during a measurement.
   std::vector<std::byte> readBytes(const Device& device) const;
+  /// Those bytes as floats.
   Image toImage(std::span<const std::byte> bytes) const;
 
  private:
@@ -49,8 +52,8 @@ class Target {
 };
 
 /// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive
-/// it. A method that samples images of its own (at most Device::methodImageCount, by then in
-/// shaderReadOnlyOptimal) makes a set with them.
+/// it. A method that samples its own images makes a set with them: at most
+/// Device::methodImageCount, and they must be in shaderReadOnlyOptimal when they are sampled.
 class FrameBindings {
  public:
   FrameBindings(const Device& device, const GpuScene& scene, const Target& target,

@@ -4,7 +4,7 @@
 
 namespace oitlab {
 
-/// Makes all writes before it visible to everything after it, within `from` -> `to`.
+/// Makes all writes of the stages `from` before it visible to the stages `to` after it.
 void memoryBarrier(const Commands& commands, vk::PipelineStageFlags2 from,
                    vk::PipelineStageFlags2 to);
 

@@ -6,8 +6,8 @@
 namespace oitlab {
 namespace {
 
-/// Large uploads go through staging memory in pieces, so that a scene of gigabytes does not need as
-/// much again in host memory.
+/// Large uploads go through staging memory in pieces of this size, so that a scene of gigabytes
+/// does not need the same amount of host memory again.
 constexpr std::uint64_t stagingBytes = 64u << 20;
 
 }  // namespace

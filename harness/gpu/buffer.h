@@ -9,7 +9,7 @@
 
 namespace oitlab {
 
-/// Who holds how much device memory, by name: the memory table of the results.
+/// How much device memory each buffer and image holds, by name: the memory table of the results.
 class MemoryLedger {
  public:
   void add(const std::string& name, std::uint64_t bytes) { bytes_[name] += bytes; }
@@ -23,21 +23,22 @@ class MemoryLedger {
   std::map<std::string, std::uint64_t> bytes_;
 };
 
-/// Where a buffer lives and who touches it.
+/// In which memory a buffer is, and who reads and writes it.
 enum class BufferKind {
-  device,    ///< device-local; filled by copies or shaders
+  device,    ///< device-local; written by copies or shaders
   upload,    ///< mapped, written by the CPU in order and read by the device
   readback,  ///< mapped and cached, written by the device and read by the CPU
-  shared,    ///< device-local and mapped: small things; needs Device::canMapItsMemory()
+  shared,    ///< device-local and mapped, for small buffers; needs Device::canMapItsMemory()
 };
 
-/// A buffer with a device address: shaders reach it through push constants, without descriptors.
-/// Counted in `ledger` under `name` for as long as it lives; the ledger must outlive it.
+/// A buffer with a device address. Shaders get the address through push constants and need no
+/// descriptor. The buffer is counted in `ledger` under `name` while it lives; the ledger must
+/// outlive it.
 class Buffer {
  public:
   Buffer() = default;
 
-  /// `bytes` > 0. Throws DeviceError naming the buffer when the device has not enough memory.
+  /// `bytes` > 0. Throws DeviceError with the buffer's name when the device has too little memory.
   Buffer(const Device& device, MemoryLedger& ledger, std::string name, std::uint64_t bytes,
          BufferKind kind = BufferKind::device);
   ~Buffer() { release(); }
@@ -49,7 +50,7 @@ class Buffer {
   vk::Buffer vk() const { return *buffer_; }
   explicit operator bool() const { return bytes_ != 0; }
 
-  /// The mapped memory of all but device buffers, as `T`s.
+  /// The mapped memory as elements of type T. Not for BufferKind::device.
   template <typename T>
   std::span<T> mapped() const {
     return {static_cast<T*>(mapped_), static_cast<std::size_t>(bytes_ / sizeof(T))};
@@ -67,8 +68,8 @@ class Buffer {
   vk::raii::Buffer buffer_ = nullptr;
 };
 
-/// A device buffer that holds `data`, copied through staging memory; waits until it is there.
-/// Empty data makes a small buffer, so that its address is always valid.
+/// A device buffer that holds `data`. Copies it through staging memory and waits for the copy.
+/// Empty data gives a small buffer, so that the address is always valid.
 Buffer uploadBuffer(const Device& device, MemoryLedger& ledger, const std::string& name,
                     std::span<const std::byte> data);
 

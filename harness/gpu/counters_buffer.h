@@ -6,15 +6,15 @@
 
 namespace oitlab {
 
-/// What shaders count in a frame, for the CPU to read after it. In memory of the device that the
-/// CPU can map it is read where it is; where a device has none such, from a copy, which costs a
-/// frame some microseconds.
+/// Counters that shaders write in a frame and the CPU reads after it. Where the CPU can map the
+/// device's memory, it reads them in place. Elsewhere it reads a copy, which costs some
+/// microseconds per frame.
 class CountersBuffer {
  public:
   CountersBuffer() = default;
 
-  /// The ledger must outlive this. `mapped`: where the CPU can map the device's memory; tests say
-  /// false for the other way. Throws DeviceError when memory is short.
+  /// The ledger must outlive this. `mapped` chooses memory that the CPU can map, and needs
+  /// Device::canMapItsMemory(). Throws DeviceError when memory is short.
   CountersBuffer(const Device& device, MemoryLedger& ledger, const std::string& name,
                  std::uint64_t bytes, bool mapped);
   CountersBuffer(const Device& device, MemoryLedger& ledger, const std::string& name,
@@ -25,7 +25,7 @@ class CountersBuffer {
   std::uint64_t address() const { return counters_.address(); }
   vk::Buffer vk() const { return counters_.vk(); }
 
-  /// After the frame whose end has recordReadback(): all of it, and the first.
+  /// The counters after a frame that ended with recordReadback(): all elements, or the first.
   template <typename T>
   std::span<const T> readAll() const {
     return (readback_ ? readback_ : counters_).mapped<T>();
@@ -42,8 +42,8 @@ class CountersBuffer {
   Buffer counters_, readback_;
 };
 
-/// At the end of a frame, after shaders of the stages `from` have counted: lets the CPU read the
-/// counters.
+/// Records, at the end of a frame, what the CPU needs to read the counters that shaders of the
+/// stages `from` wrote.
 void recordReadback(const Commands& commands, std::initializer_list<const CountersBuffer*> counters,
                     vk::PipelineStageFlags2 from = vk::PipelineStageFlagBits2::eComputeShader);
 

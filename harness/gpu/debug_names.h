@@ -6,9 +6,10 @@
 
 namespace oitlab {
 
-/// Names for RenderDoc, Nsight and the validation layer: buffers by the names of the memory table,
-/// pipelines by shader and definitions, stages by the names of the results. Nothing is called
-/// where Device::showsNames() is false, so that a measurement does not pay for them.
+/// Names that RenderDoc, Nsight and the validation layer show. Buffers and images have the names of
+/// the memory table, pipelines those of their shaders and definitions, and stages those of the
+/// results. Where Device::showsNames() is false nothing is called, so that a measurement does not
+/// pay for names.
 
 /// Names an object of the device, of any kind.
 template <typename Handle>
@@ -18,7 +19,7 @@ void nameObject(const Device& device, Handle handle, const std::string& name) {
   device.vk().setDebugUtilsObjectNameEXT({Handle::objectType, raw, name.c_str()});
 }
 
-/// Puts what is recorded in its lifetime under `name`.
+/// Labels the commands that are recorded while it lives.
 class DebugLabel {
  public:
   DebugLabel(const Device& device, const Commands& commands, const std::string& name)

@@ -19,7 +19,7 @@ bool wantsDebugNames() {
   return std::getenv("OITLAB_DEBUG_NAMES") != nullptr;
 }
 
-/// Capture tools announce themselves, and what they do with names.
+/// Capture tools announce themselves and say whether they use names.
 bool hasToolForNames(const vk::raii::PhysicalDevice& physical) {
   const auto tools = physical.getToolProperties();
   return std::any_of(tools.begin(), tools.end(), [](const auto& tool) {
@@ -167,8 +167,8 @@ void Device::makeLayouts() {
 }
 
 Device::~Device() {
-  // Whatever is still running uses resources that are about to go. Waiting on a lost device throws,
-  // and then there is nothing left to wait for.
+  // Work that still runs uses resources that are about to be destroyed. Waiting on a lost device
+  // throws, and then there is nothing to wait for.
   try {
     if (*device_) device_.waitIdle();
   } catch (const vk::SystemError&) {

@@ -16,12 +16,12 @@ namespace oitlab {
 class PipelineCache;
 class ShaderLibrary;
 
-/// A command buffer that brings its own function table, so that the program runs (and explains
-/// itself) on a machine without a Vulkan loader.
+/// A command buffer with its own function table. The program does not link to the Vulkan loader, so
+/// that it can start on a machine without one and say what is missing.
 using Commands = vk::raii::CommandBuffer;
 
-/// What a device can do, as far as oitlab asks. Everything beyond the baseline (see
-/// Device::missingBaseline) is optional: a method that needs it says so in its registration.
+/// The properties of a device that oitlab uses. Features beyond the baseline (see
+/// Device::missingBaseline) are optional: a method lists the ones it needs in its MethodInfo.
 struct DeviceInfo {
   std::string name;
   std::string type;  ///< "discrete", "integrated", "virtual", "cpu" or "other"
@@ -33,7 +33,7 @@ struct DeviceInfo {
   std::uint32_t maxSubgroupSize = 0;
   std::uint32_t timestampValidBits = 0;
   float timestampPeriodNs = 0;
-  std::uint32_t maxImageSize = 0;          ///< pixels on a side, of images and render areas
+  std::uint32_t maxImageSize = 0;          ///< pixels per side, of images and render areas
   std::uint32_t maxSharedMemoryBytes = 0;  ///< of one compute workgroup
   std::uint32_t maxWorkgroupInvocations = 0;
   std::uint64_t maxAllocationBytes = 0;
@@ -56,21 +56,21 @@ class Device {
     bool shaderPrintf = false;  ///< shaders may print (ShaderLibrary); needs the validation layer
   };
 
-  /// Opens a device. Throws DeviceError when there is no Vulkan loader, no device, no such index,
-  /// or the device misses part of the baseline; InputError never.
+  /// Opens a device. Throws DeviceError when there is no Vulkan loader, no device, no device of
+  /// that index, or when the device lacks part of the baseline.
   explicit Device(const Options& options);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// All devices in the order of the loader, usable or not.
+  /// All devices in the order of the loader, whether or not they can be used.
   static std::vector<DeviceInfo> listDevices();
 
-  /// The index that Options{} would open, or -1.
+  /// The index of the device that Options{} opens, or -1 when there is none.
   static int bestDevice(const std::vector<DeviceInfo>& devices);
 
-  /// What the baseline needs and `info` lacks; empty when the device will do. The baseline is
-  /// Vulkan 1.3 with the features in device.cpp, all of them common on desktop GPUs and in
+  /// What `info` lacks of the baseline; empty when the device can be used. The baseline is
+  /// Vulkan 1.3 with the features that device_info.cpp marks, all common on desktop GPUs and in
   /// lavapipe.
   static std::vector<std::string> missingBaseline(const DeviceInfo& info);
 
@@ -78,57 +78,58 @@ class Device {
   const vk::raii::Device& vk() const { return device_; }
   ShaderLibrary& shaders() const { return *shaders_; }
 
-  /// The pipelines made so far: Pipeline looks here first.
+  /// The pipelines that were made so far. Pipeline looks here first.
   PipelineCache& pipelines() const { return *pipelines_; }
 
-  /// The validation layer is there: times are not to be trusted.
+  /// The validation layer is active, so times mean nothing.
   bool validation() const { return validation_; }
-  /// Objects and stages are given their names (gpu/debug_names.h): under validation, where a tool
-  /// says that it shows them (vkGetPhysicalDeviceToolProperties), or where the environment variable
+  /// Objects and stages get names (gpu/debug_names.h): under validation, when a capture tool says
+  /// that it shows them (vkGetPhysicalDeviceToolProperties), or when the environment variable
   /// OITLAB_DEBUG_NAMES is set.
   bool showsNames() const { return showsNames_; }
-  /// Asked for (gpu/pipeline_statistics.h) and supported.
+  /// Pipeline statistics are asked for (gpu/pipeline_statistics.h) and supported.
   bool hasPipelineStatistics() const { return pipelineStatistics_; }
-  /// VK_KHR_shader_subgroup_uniform_control_flow is enabled: shaders may ask that the lanes of a
-  /// subgroup come together again after a branch.
+  /// VK_KHR_shader_subgroup_uniform_control_flow is enabled: shaders may require that the lanes of
+  /// a subgroup reconverge after a branch.
   bool hasSubgroupUniformControlFlow() const { return subgroupUniformControlFlow_; }
 
-  /// Messages of the validation layers so far (warnings and errors). A clean run has none.
+  /// Warnings and errors of the validation layer so far. A clean run has none.
   std::vector<std::string> validationMessages() const { return instance_.validationMessages(); }
 
-  /// Whether there is memory that is the device's own and mapped by the CPU.
+  /// Whether the CPU can map device-local memory.
   bool canMapItsMemory() const;
 
-  /// Index of a memory type that `typeBits` allows and that has `wanted`, preferring `preferred`.
-  /// Throws DeviceError when there is none.
+  /// The index of a memory type that `typeBits` allows and that has all of `wanted` and, if there
+  /// is one, all of `preferred`. Throws DeviceError when there is none.
   std::uint32_t memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,
                            vk::MemoryPropertyFlags preferred = {}) const;
 
-  /// The first of `formats` that optimally tiled images of `uses` can have. Throws DeviceError when
-  /// there is none.
+  /// The first of `formats` that supports `uses` with optimal tiling. Throws DeviceError when there
+  /// is none.
   vk::Format supportedFormat(std::initializer_list<vk::Format> formats,
                              vk::FormatFeatureFlags uses) const;
 
-  /// The one layout that all pipelines share: set 0 holds the few images (see shaders/common/
-  /// bindings.glsl), and push constants carry buffer addresses.
+  /// The layout that all pipelines share. Set 0 holds the few images
+  /// (shaders/common/bindings.glsl); push constants hold the addresses of buffers.
   vk::PipelineLayout pipelineLayout() const { return *pipelineLayout_; }
   vk::DescriptorSetLayout setLayout() const { return *setLayout_; }
 
   Commands makeCommandBuffer() const;
 
-  /// Submits and returns at once; `fence` signals when the device is done.
+  /// Submits and returns at once. `fence` signals when the device has finished.
   void submit(const Commands& commands, vk::Fence fence) const;
 
-  /// Waits for a fence. Throws DeviceError after `seconds` without an answer or on device loss.
+  /// Waits for a fence. Throws DeviceError when it did not signal within `seconds`, or when the
+  /// device is lost.
   void wait(vk::Fence fence, double seconds = 600.0) const;
 
-  /// Records, submits and waits: for set-up work, never inside a measurement.
+  /// Records, submits and waits. For preparation, never inside a measurement.
   void runOnce(const std::function<void(const Commands&)>& record) const;
 
-  /// Images of its own that a method can sample through the common layout.
+  /// The number of its own images that a method can sample through the common layout.
   static constexpr std::uint32_t methodImageCount = 4;
 
-  /// Push constants: 128 bytes, what Vulkan guarantees.
+  /// Size of the push constants: what Vulkan guarantees.
   static constexpr std::uint32_t pushConstantBytes = 128;
 
  private:

@@ -46,7 +46,7 @@ std::vector<NamedFeature> namedFeatures(FeatureChain& chain) {
       {"synchronization2", &v13.synchronization2, true},
       {"maintenance4", &v13.maintenance4, true},
       {"shaderInt64", &v10.shaderInt64, true},
-      // Optional: a method that needs one says so.
+      // Optional: a method lists the ones it needs.
       {"fragmentStoresAndAtomics", &v10.fragmentStoresAndAtomics, false},
       {"geometryShader", &v10.geometryShader, false},
       {"independentBlend", &v10.independentBlend, false},
@@ -62,7 +62,7 @@ std::vector<NamedFeature> namedFeatures(FeatureChain& chain) {
 }
 
 DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical) {
-  // Asking a 1.0 device for the 1.3 structures is not allowed, so the version comes first.
+  // The 1.3 structures must not be queried from an older device, so the version is checked first.
   const auto basic = physical.getProperties();
   DeviceInfo info;
   info.name = std::string(basic.deviceName.data());

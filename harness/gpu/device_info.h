@@ -12,13 +12,13 @@ using FeatureChain =
 struct NamedFeature {
   std::string name;
   vk::Bool32* value;  ///< points into the chain
-  bool baseline;      ///< no device without it
+  bool baseline;      ///< a device without it cannot be used
 };
 
 FeatureChain queryFeatures(const vk::raii::PhysicalDevice& physical);
 
-/// The one table of features: it drives what is enabled, what `oitlab info` prints and what the
-/// baseline demands.
+/// The table of all features that oitlab knows. It says which ones are enabled, which ones
+/// `oitlab info` prints, and which ones are the baseline.
 std::vector<NamedFeature> namedFeatures(FeatureChain& chain);
 
 DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical);

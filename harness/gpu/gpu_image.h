@@ -4,7 +4,7 @@
 
 namespace oitlab {
 
-/// A 2D image with one view of all its levels, counted in a ledger like a Buffer.
+/// A 2D image with one view of all its mip levels. It is counted in a ledger like a Buffer.
 class GpuImage {
  public:
   struct Description {
@@ -17,7 +17,7 @@ class GpuImage {
 
   GpuImage() = default;
 
-  /// Throws DeviceError naming the image when the device has not enough memory.
+  /// Throws DeviceError with the image's name when the device has too little memory.
   GpuImage(const Device& device, MemoryLedger& ledger, const Description& description);
   ~GpuImage() { release(); }
   GpuImage(GpuImage&& other) noexcept { *this = std::move(other); }
@@ -28,7 +28,7 @@ class GpuImage {
   vk::ImageView view() const { return *view_; }
   vk::Extent2D extent() const { return {description_.width, description_.height}; }
 
-  /// Moves all levels between layouts, with an execution and memory dependency between the scopes.
+  /// Changes the layout of all levels, with an execution and memory dependency between the stages.
   void transition(const Commands& commands, vk::ImageLayout from, vk::ImageLayout to,
                   vk::PipelineStageFlags2 fromStage, vk::AccessFlags2 fromAccess,
                   vk::PipelineStageFlags2 toStage, vk::AccessFlags2 toAccess) const;
@@ -44,13 +44,13 @@ class GpuImage {
   vk::raii::ImageView view_ = nullptr;
 };
 
-/// Copies one level's texels (or blocks) into an image that is in `transferDstOptimal`.
+/// The texels or compressed blocks of one mip level.
 struct LevelData {
   std::uint32_t level = 0, width = 0, height = 0;
   std::span<const std::byte> bytes;
 };
 
-/// Uploads all levels and leaves the image in shaderReadOnlyOptimal; waits until it is there.
+/// Uploads `levels`, waits for the copy, and leaves the image in shaderReadOnlyOptimal.
 void uploadImage(const Device& device, const GpuImage& image, std::span<const LevelData> levels);
 
 }  // namespace oitlab

@@ -33,13 +33,13 @@ bool hasExtension(const vk::raii::Context& context, std::string_view name) {
                      [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
-/// The layer's messages have names; those of debugPrintfEXT end like this in all its versions.
+/// Every message of the layer has a name. Those of debugPrintfEXT end like this in all versions.
 bool isShaderPrintf(const VkDebugUtilsMessengerCallbackDataEXT& data) {
   return data.pMessageIdName != nullptr &&
          std::string_view(data.pMessageIdName).ends_with("DEBUG-PRINTF");
 }
 
-/// What the shader printed, without what the layer puts around it.
+/// What the shader printed, without the text that the layer puts around it.
 std::string_view printedText(std::string_view message) {
   const std::size_t bar = message.rfind(" | ");
   if (bar != std::string_view::npos) message.remove_prefix(bar + 3);
@@ -107,7 +107,8 @@ Instance::Instance(const Options& options)
   using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
   vk::DebugUtilsMessengerCreateInfoEXT messenger;
   messenger.messageSeverity = Severity::eWarning | Severity::eError;
-  if (options.shaderPrintf) messenger.messageSeverity |= Severity::eInfo;  // what shaders print
+  if (options.shaderPrintf)
+    messenger.messageSeverity |= Severity::eInfo;  // the level of printed text
   messenger.messageType = Type::eGeneral | Type::eValidation | Type::ePerformance;
   messenger.pfnUserCallback =
       reinterpret_cast<decltype(messenger.pfnUserCallback)>(&MessageLog::receive);

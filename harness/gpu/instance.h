@@ -8,7 +8,7 @@
 
 namespace oitlab {
 
-/// The Vulkan loader, an instance, and what the validation layer says.
+/// The Vulkan loader, an instance, and the messages of the validation layer.
 class Instance {
  public:
   struct Options {
@@ -16,8 +16,8 @@ class Instance {
     bool shaderPrintf = false;  ///< the validation layer, for debugPrintfEXT in shaders
   };
 
-  /// Throws DeviceError when there is no loader, no driver, no Vulkan 1.3, or when the validation
-  /// layer is wanted and missing.
+  /// Throws DeviceError when there is no loader, no driver or no Vulkan 1.3, or when the validation
+  /// layer is asked for and not installed.
   explicit Instance(const Options& options);
   ~Instance();
 
@@ -26,11 +26,11 @@ class Instance {
   /// All devices in the order of the loader. Throws DeviceError when the driver does not answer.
   std::vector<vk::raii::PhysicalDevice> devices() const;
 
-  /// VK_EXT_debug_utils is enabled: objects can have names, command buffers labels.
+  /// VK_EXT_debug_utils is enabled: objects can have names, and commands can have labels.
   bool hasDebugUtils() const { return debugUtils_; }
 
-  /// Warnings and errors of the validation layer so far. A clean run has none. What shaders print
-  /// goes to stderr and is none of them.
+  /// Warnings and errors of the validation layer so far. A clean run has none. Text that shaders
+  /// print goes to stderr and is not among them.
   std::vector<std::string> validationMessages() const;
 
  private:

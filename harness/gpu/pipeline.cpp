@@ -14,7 +14,7 @@ vk::raii::ShaderModule makeModule(const Device& device, const Words& words) {
   return {device.vk(), vk::ShaderModuleCreateInfo({}, words)};
 }
 
-/// As it is called in messages and by tools: "wboit/accumulate.frag WEIGHT=7".
+/// The name that capture tools show: "wboit/accumulate.frag WEIGHT=7".
 std::string labelOf(const std::string& path, const Defines& defines, const Constants& constants) {
   std::string label = path;
   for (const auto& [name, value] : defines) label += fmt::format(" {}={}", name, value);
@@ -35,7 +35,7 @@ vk::raii::Pipeline makeCompute(const Device& device, const Words& words, const C
   vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                           &specialization);
   if (subgroupSize != 0 && device.info().has("subgroupSizeControl")) stage.setPNext(&required);
-  // Lanes are then invocations in order, all of them there: gl_SubgroupID counts whole subgroups.
+  // Then no subgroup has inactive lanes, and lanes are consecutive invocations of the workgroup.
   if (subgroupSize != 0 && device.info().has("computeFullSubgroups"))
     stage.setFlags(vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups);
   vk::ComputePipelineCreateInfo info({}, stage, device.pipelineLayout());

@@ -11,16 +11,16 @@ namespace oitlab {
 /// Specialization constants: values of constant_id 0, 1, 2, ...
 using Constants = std::vector<std::uint32_t>;
 
-/// A pipeline of either kind. Bind, then draw or dispatch. A handle: the device owns what is
-/// behind it, and must outlive it.
+/// A graphics or compute pipeline: bind it, then draw or dispatch. This is a handle to a pipeline
+/// that the device owns; the device must outlive it.
 class Pipeline {
  public:
   Pipeline() = default;
 
-  /// A compute pipeline from shaders/`path`. `subgroupSize` (0 = the device's choice) is required
-  /// through subgroupSizeControl where the device has it, and subgroups are full: the workgroup's
-  /// width must be a multiple of it. Throws DeviceError, with the shader and `ifRefused`, where the
-  /// driver makes none.
+  /// A compute pipeline from shaders/`path`. If `subgroupSize` is not 0 and the device has
+  /// subgroupSizeControl, subgroups have this size and are full: the workgroup's width must be a
+  /// multiple of it. With 0 the device chooses. Throws DeviceError when the driver does not make
+  /// the pipeline; the message has the shader and `ifRefused`.
   static Pipeline compute(const Device& device, const std::string& path,
                           const Defines& defines = {}, const Constants& constants = {},
                           std::uint32_t subgroupSize = 0, const std::string& ifRefused = "");
@@ -31,13 +31,13 @@ class Pipeline {
     Defines defines;  ///< for both shaders
     std::vector<vk::Format> colorFormats;
     vk::Format depthFormat = vk::Format::eUndefined;
-    bool depthTest = true;  ///< where there is a depth format
+    bool depthTest = true;  ///< ignored without a depth format
     bool depthWrite = false;
-    /// Reversed depth: a fragment survives where it is as near as the stored depth or nearer.
+    /// Depth is reversed: by default a fragment passes if it is not farther than the stored depth.
     vk::CompareOp depthCompare = vk::CompareOp::eGreaterOrEqual;
-    /// Of a pass that has a stencil (Frame::renderOnDepthStencil): the test and what it writes, for
-    /// both faces; by default it lets all pass and keeps what is there. The reference value is set
-    /// by setStencilReference() after bind().
+    /// For a pass with a stencil (Frame::renderOnDepthStencil): the stencil test and what it
+    /// writes, for both faces. By default every fragment passes and the stencil stays as it is. The
+    /// reference value is set by setStencilReference() after bind().
     vk::Format stencilFormat = vk::Format::eUndefined;
     vk::StencilOpState stencil{vk::StencilOp::eKeep,
                                vk::StencilOp::eKeep,
@@ -48,17 +48,18 @@ class Pipeline {
                                0};
     std::vector<vk::PipelineColorBlendAttachmentState>
         blends;  ///< one per colour format; default: no blending
-    /// What to say beside the driver's reason where it refuses the pipeline: what is unusual about
-    /// it, and what to ask for instead.
+    /// Added to the message when the driver refuses the pipeline: what is unusual about it, and
+    /// which parameter to change.
     std::string ifRefused;
   };
-  /// Throws DeviceError, with the shaders and `ifRefused`, where the driver makes none.
+  /// Throws DeviceError when the driver does not make the pipeline; the message has the shaders and
+  /// `ifRefused`.
   static Pipeline graphics(const Device& device, const Graphics& description);
 
-  /// Binds it with the images of `set`; null for shaders that touch no image.
+  /// Binds the pipeline and the images of `set`, which is null for shaders that use no image.
   void bind(const Commands& commands, vk::DescriptorSet set) const;
 
-  /// The same, with push constants: a struct of at most Device::pushConstantBytes.
+  /// The same with push constants, a struct of at most Device::pushConstantBytes.
   template <typename Push>
   void bind(const Commands& commands, vk::DescriptorSet set, const Push& push) const {
     static_assert(sizeof(Push) <= Device::pushConstantBytes);
@@ -72,8 +73,8 @@ class Pipeline {
   vk::Pipeline pipeline_;
 };
 
-/// The message for a pipeline that `device` refuses for `cause`: `shaders` are relative to
-/// shaders/.
+/// The message for a pipeline that `device` refuses for the reason `cause`. Paths of `shaders` are
+/// relative to the folder shaders/.
 std::string pipelineRefusal(const std::string& device, const std::vector<std::string>& shaders,
                             const Defines& defines, const Constants& constants,
                             const std::string& cause, const std::string& ifRefused);
@@ -85,10 +86,10 @@ vk::PipelineColorBlendAttachmentState blending(vk::BlendFactor sourceFactor,
 /// source + destination.
 vk::PipelineColorBlendAttachmentState additive();
 
-/// Front-to-back result over what is there: source + destination * (1 - source alpha).
+/// Puts a premultiplied colour over the destination: source + destination * (1 - source alpha).
 vk::PipelineColorBlendAttachmentState premultipliedOver();
 
-/// Back-to-front `over` of colours that are not premultiplied.
+/// Puts a colour that is not premultiplied over the destination: back-to-front blending.
 vk::PipelineColorBlendAttachmentState straightOver();
 
 }  // namespace oitlab

@@ -10,7 +10,8 @@
 
 namespace oitlab {
 
-/// All that goes into a pipeline, byte by byte: its identity in a PipelineCache.
+/// The key of a pipeline in a PipelineCache: the bytes of everything that the pipeline is made
+/// from.
 class PipelineKey {
  public:
   template <typename T>
@@ -34,12 +35,13 @@ class PipelineKey {
   std::string text_;
 };
 
-/// The pipelines of a device, in memory. A method that is made for one scene after another has its
-/// shaders compiled by the driver once. Nothing of it is on disk: drivers keep caches of their own.
+/// The pipelines of a device, in memory: the driver compiles a method's shaders once, although a
+/// method is made anew for each scene. Nothing is stored on disk, where drivers have their own
+/// caches.
 class PipelineCache {
  public:
-  /// The pipeline of `key`; where there is none yet, what `make()` returns, which is kept. Passes
-  /// on what `make` throws.
+  /// The pipeline with this key. If there is none yet, it is the one that `make()` returns. Throws
+  /// what `make` throws.
   template <typename Make>
   vk::Pipeline findOrMake(const PipelineKey& key, Make&& make) {
     const std::string hash = key.hash();

@@ -4,9 +4,9 @@
 
 namespace oitlab {
 
-/// Whether OITLAB_PIPELINE_STATISTICS is set: what the driver's compiler says of each pipeline
-/// (registers, shared memory, spills) is then printed to stderr. For tuning; see
-/// docs/performance.md.
+/// Whether the environment variable OITLAB_PIPELINE_STATISTICS is set. Then the statistics of the
+/// driver's compiler (registers, shared memory, spills) are printed to stderr for each pipeline.
+/// For tuning; see docs/performance.md.
 bool wantsPipelineStatistics();
 
 /// One line per shader stage. Prints nothing on devices without

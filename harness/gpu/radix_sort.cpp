@@ -44,7 +44,7 @@ void RadixSort::record(const Commands& commands) const {
     commands.dispatch(groups, 1, 1);
     computeBarrier(commands);
   };
-  // An even number of passes: the last one ends where the first began.
+  // The number of passes is even, so the result is in the buffers that held the input.
   for (std::uint32_t pass = 0; pass < 32 / SORT_DIGIT_BITS; ++pass) {
     const std::size_t from = pass % 2, to = 1 - from;
     push.keysIn = keys_[from].address();

@@ -18,8 +18,8 @@
 namespace oitlab {
 namespace {
 
-// What every shader may use, so that none repeats it. Each is core in Vulkan 1.3, or a feature of
-// the baseline, or (subgroups, 64-bit atomics) used only by variants whose method checked for it.
+// Extensions for all shaders. Each is part of Vulkan 1.3, a feature of the baseline, or (subgroup
+// operations, 64-bit atomics) used only by shaders whose method checks that the device has it.
 constexpr const char* preamble = R"(
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require

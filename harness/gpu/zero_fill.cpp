@@ -19,7 +19,7 @@ void ZeroFill::record(const Commands& commands, std::span<const Buffer* const> b
     push.words[i] = std::uint32_t(buffers[i]->bytes() / 4);
     most = std::max(most, push.words[i]);
   }
-  // Each invocation takes a few words: enough to keep a GPU busy, few enough to start quickly.
+  // A few words per invocation: few invocations start quickly, and there are enough for a GPU.
   constexpr std::uint32_t wordsEach = 8;
   const std::uint32_t groups = std::clamp(most / (wordsEach * ZERO_FILL_GROUP), 1u, 65535u);
   push.invocations = groups * ZERO_FILL_GROUP;

@@ -7,14 +7,14 @@
 
 namespace oitlab {
 
-/// Zeroes several buffers by one dispatch. Between dispatches this is quicker than a
-/// vkCmdFillBuffer for each, which waits for the transfer stage and back.
+/// Zeroes several buffers with one dispatch. Between dispatches this is faster than one
+/// vkCmdFillBuffer per buffer, which needs barriers to the transfer stage and back.
 class ZeroFill {
  public:
   explicit ZeroFill(const Device& device);
 
-  /// At most 4 buffers, of less than 16 GiB. Written by the compute stage; a barrier is the
-  /// caller's.
+  /// At most 4 buffers, each smaller than 16 GiB. The compute stage writes them; the caller records
+  /// the barrier.
   void record(const Commands& commands, std::span<const Buffer* const> buffers) const;
 
  private:

@@ -66,8 +66,8 @@ void checkChannel(const Imf::Channel& channel, const char* channelName, const st
                      channelName, channel.xSampling, channel.ySampling);
 }
 
-/// Whether the file is grey (Y) rather than RGB. Anything else is refused: a layer or a chroma
-/// channel that is dropped without a word would be another image.
+/// Whether the file is grey (Y) and not RGB. Any other set of channels is an error: without a layer
+/// or a chroma channel it would be another image.
 bool isGrey(const Imf::ChannelList& channels, const std::string& name) {
   const bool rgb =
       channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
@@ -98,7 +98,7 @@ Image readPixels(Imf::InputFile& file, const std::string& name) {
   image.rgba.resize(std::size_t(width) * height * 4);
   Imf::FrameBuffer frame;
   const auto insert = [&](const char* channel, int component) {
-    // A channel that the file lacks is filled with 1: only alpha may be.
+    // A missing channel is filled with 1. Only alpha may be missing.
     frame.insert(channel,
                  Imf::Slice::Make(Imf::FLOAT, image.rgba.data() + component, window,
                                   4 * sizeof(float), 4 * sizeof(float) * width, 1, 1, 1.0));
@@ -149,7 +149,7 @@ std::string encodeExr(const Image& image, const std::string& name) {
   try {
     MemoryOutput stream(name);
     {
-      // The table of line offsets is written when the file is closed.
+      // The library writes the table of line offsets when the file is closed.
       Imf::OutputFile file(stream, header);
       file.setFrameBuffer(frame);
       file.writePixels(image.height);

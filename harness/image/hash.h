@@ -6,8 +6,8 @@
 
 namespace oitlab {
 
-/// XXH3 128-bit hash as 32 hex digits, the same as `xxh128sum` prints. For telling whether two
-/// read-backs are the same bit for bit; not for security.
+/// The 128-bit XXH3 hash as 32 hex digits, the same as `xxh128sum` prints. It tells whether two
+/// images are equal bit for bit. It is not for security.
 std::string imageHash(std::span<const std::byte> bytes);
 
 }  // namespace oitlab

@@ -43,7 +43,7 @@ void checkImagePath(const std::filesystem::path& path) {
 }
 
 Image readImage(const std::filesystem::path& path) {
-  // The extension first: a wrong one should not cost the reading of a large file.
+  // The extension is checked first, before a large file is read.
   const Format format = formatOf(path);
   const std::string bytes = readTextFile(path);
   return format == Format::png ? decodePng(bytes, path.string()) : decodeExr(bytes, path.string());

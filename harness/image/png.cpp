@@ -13,9 +13,9 @@
 namespace oitlab {
 namespace {
 
-/// libpng reports an error by a jump out of its call, over which no destructor may be due. So each
-/// function below that calls setjmp holds trivial locals only and returns whether all went well;
-/// what owns memory lives in its caller.
+/// libpng reports an error by longjmp, which must not skip destructors. Therefore each function
+/// below that calls setjmp has only trivial local variables and returns whether it succeeded. Its
+/// caller owns the memory.
 struct Failure {
   char message[200] = "";
 };
@@ -73,13 +73,13 @@ void addBytes(png_structp png, png_bytep bytes, std::size_t count) {
 bool readHeader(Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_read_fn(reader.png, &reader, takeBytes);
-  // Ours is the limit that is checked, with a message that says it.
+  // Our own limit is checked instead, with a better message.
   png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_read_info(reader.png, reader.info);
   return true;
 }
 
-/// Whatever the file holds becomes RGBA of 8 or 16 bits in the byte order of this machine.
+/// Converts every kind of PNG to RGBA with 8 or 16 bits in the byte order of this machine.
 bool setUpConversion(Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_expand(reader.png);
@@ -119,7 +119,7 @@ void convertSamples(const std::vector<png_byte>& pixels, std::vector<float>& rgb
 }
 
 png_byte quantize(float value, bool srgb) {
-  // The comparison is false for NaN too, which no cast may meet.
+  // The comparison is also false for NaN, whose cast to an integer would be undefined.
   if (!(value > 0)) return 0;
   const float encoded = srgb ? value : srgbEncode(value);
   return png_byte(std::lround(std::min(encoded, 1.0F) * 255.0F));

@@ -7,7 +7,8 @@
 namespace oitlab {
 namespace {
 
-/// A function's static, so that it exists before the first registration, whatever the link order.
+/// A static variable of a function, so that it exists before the first registration, whatever the
+/// link order is.
 std::map<std::string, MethodInfo>& registry() {
   static std::map<std::string, MethodInfo> methods;
   return methods;

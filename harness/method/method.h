@@ -12,53 +12,54 @@
 
 namespace oitlab {
 
-/// What happened in the last frame, known once the device is done with it.
+/// The result of the last frame, known once the device has finished it.
 struct Status {
-  /// Memory ran out, the method has made its buffers larger, and the frame is to be recorded again.
+  /// A buffer was too small, the method has enlarged it, and the frame must be recorded again.
   bool recordAgain = false;
-  /// By name: "fragments" (transparent fragments in front of the opaque depth) and whatever else
-  /// the method counts. Complete after an instrumented frame.
+  /// By name: "fragments" (transparent fragments in front of the opaque depth) and what else the
+  /// method counts. Complete after an instrumented frame.
   std::map<std::string, std::uint64_t> counters;
 };
 
-/// What a method is made for. All of it but `parameters` outlives the method.
+/// What a method is made for. All of it except `parameters` outlives the method.
 struct MethodContext {
   const Device& device;
   const GpuScene& scene;
   const Target& target;
-  MemoryLedger& memory;  ///< buffers made with it are listed in the results
+  MemoryLedger& memory;  ///< the method's buffers are made with it, so that the results list them
   const Parameters& parameters;
 };
 
-/// An order-independent-transparency method. Its constructor makes pipelines and buffers; then come
-/// any number of frames, each record(), wait for the device, status().
+/// A method of order-independent transparency. Its constructor makes pipelines and buffers. Then,
+/// for each frame, the harness calls record(), waits for the device and calls status().
 class Method {
  public:
   virtual ~Method() = default;
 
-  /// Records a frame. On entry the target holds the opaque colour and depth, visible to all stages;
-  /// on return the target must hold the finished image, writes not yet made visible.
+  /// Records a frame. Before it the target holds the opaque colour and depth, visible to all
+  /// stages. The commands must leave the finished image in the target; the harness makes it
+  /// visible.
   virtual void record(const Frame& frame) = 0;
 
-  /// Whether record() calls Frame::finishTarget() and leaves the target alone until then.
+  /// Whether record() calls Frame::finishTarget(), and does not touch the target before that.
   virtual bool finishesTarget() const { return false; }
 
-  /// After the device is done with the frame.
+  /// Called after the device has finished the frame.
   virtual Status status() = 0;
 
-  /// The buffers of a method that MethodInfo::makeFor() made.
+  /// The method's memory by buffer.
   const MemoryLedger& memory() const { return *ledger_; }
 
  private:
   friend struct MethodInfo;
 
-  // In the base, so that it outlives the buffers of the method itself.
+  // In the base class, so that it is destroyed after the method's buffers.
   std::unique_ptr<MemoryLedger> ledger_ = std::make_unique<MemoryLedger>();
 };
 
-/// The declaration of a method: who it is, what it takes, what it needs.
+/// The declaration of a method: its name and origin, its parameters, and the features it needs.
 struct MethodInfo {
-  std::string name;     ///< that of its folder
+  std::string name;     ///< the name of its folder
   std::string summary;  ///< one line
   std::string source;   ///< paper or origin
   bool exact = false;   ///< claims the exact image
@@ -66,7 +67,7 @@ struct MethodInfo {
   std::vector<std::string> features;  ///< Vulkan features it needs beyond the baseline
   std::function<std::unique_ptr<Method>(const MethodContext&)> make;
 
-  /// What `device` lacks for this method; empty when it can run there.
+  /// The features that `device` lacks for this method; empty when the method can run there.
   std::vector<std::string> missing(const DeviceInfo& device) const;
 
   /// Calls `make` with a ledger for the method's memory. `device`, `scene` and `target` must
@@ -79,7 +80,7 @@ struct MethodInfo {
 /// All registered methods by name.
 const std::map<std::string, MethodInfo>& methods();
 
-/// Throws InputError with a suggestion when there is no such method.
+/// Throws InputError, with a suggestion, when there is no such method.
 const MethodInfo& findMethod(const std::string& name);
 
 /// Constructs a method, as MethodInfo::make.

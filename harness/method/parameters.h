@@ -16,15 +16,15 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 std::string toString(const ParameterValue& value);
 nlohmann::json toJson(const ParameterValue& value);
 
-/// The one declaration of a parameter: it drives the command line, the validation of experiments,
-/// `oitlab list methods` and the columns of the results. The type is that of `defaultValue`.
+/// The declaration of a parameter. The command line, the checks of experiments, `oitlab list
+/// methods` and the columns of the results all follow from it. The type is that of `defaultValue`.
 struct Parameter {
   std::string name;
   ParameterValue defaultValue;
   std::string help;                  ///< one line
   std::string unit = "";             ///< "" for a pure number
-  double min = 0, max = 0;           ///< of numbers, inclusive
-  std::vector<std::string> choices;  ///< of enumerations
+  double min = 0, max = 0;           ///< for numbers, inclusive
+  std::vector<std::string> choices;  ///< for enumerations
 
   std::string typeName() const;  ///< "bool", "int", "float" or "enum"
 
@@ -40,14 +40,14 @@ Parameter real(std::string name, double value, double min, double max, std::stri
 /// The first choice is the default.
 Parameter choice(std::string name, std::vector<std::string> choices, std::string help);
 
-/// The values of all parameters of one method: every declared one is there, and in range.
+/// The values of all parameters of one method. Every declared parameter has a value in its range.
 class Parameters {
  public:
   Parameters() = default;
 
-  /// The defaults of `declared`, with `given` (name -> text as the command line or TOML has it)
-  /// parsed and checked over them. Throws InputError: an unknown name with a suggestion, a value of
-  /// the wrong type or out of range with the range. `owner` names the method in messages.
+  /// The defaults of `declared`, replaced by the values of `given`: name -> text from the command
+  /// line or a TOML file. Throws InputError for an unknown name, with a suggestion, and for a value
+  /// of the wrong type or out of range, with the range. `owner` names the method in messages.
   Parameters(const std::vector<Parameter>& declared,
              const std::map<std::string, std::string>& given, const std::string& owner);
 

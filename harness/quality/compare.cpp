@@ -10,8 +10,8 @@
 namespace oitlab {
 namespace {
 
-/// One step of an 8-bit image. The floats of two neighbouring steps lie up to 6e-8 further apart,
-/// so that without the margin "more than one step" would depend on which steps they are.
+/// One step of an 8-bit image. As floats, two neighbouring steps may be up to 6e-8 farther apart.
+/// Without the margin it would depend on the step whether one step counts as more than one.
 constexpr double kStep = 1.0 / 255.0 + 1e-6;
 
 }  // namespace
@@ -35,7 +35,7 @@ Comparison compareImages(const Image& image, const Image& reference) {
   if (pixels == 0 || !std::isfinite(result.maxError)) return result;
   const bool linear = !image.srgb && !reference.srgb;
   if (result.maxError == 0 && image.srgb == reference.srgb) {
-    // Exact methods give equal images, cell after cell: nothing is to be filtered for that.
+    // Exact methods give equal images in many cells; these need no filters.
     if (std::min(image.width, image.height) >= kMinSsimSide) result.ssim = 1;
     result.flip = 0;
     if (linear) result.flipHdr = 0;

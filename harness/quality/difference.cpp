@@ -25,7 +25,7 @@ std::array<double, 3> Difference::at(std::size_t pixel) const {
   for (std::size_t c = 0; c < 3; ++c) {
     const double a = channel(image_, c);
     const double b = channel(reference_, c);
-    // Two infinities must not cancel out, nor a NaN slip through a comparison that is false for it.
+    // Two infinities must not cancel out, and comparisons with NaN are false, so both are tested.
     const bool measurable = std::isfinite(a) && std::isfinite(b);
     difference[c] = measurable ? std::abs(a - b) : std::numeric_limits<double>::infinity();
   }

@@ -7,17 +7,17 @@
 
 namespace oitlab {
 
-/// The difference of two images, pixel by pixel: what compareImages sums and errorMap shows. Keeps
-/// references: both images must outlive it.
+/// The difference of two images, pixel by pixel. compareImages() sums it and errorMap() shows it.
+/// It refers to both images, which must outlive it.
 class Difference {
  public:
-  /// Throws InputError when the sizes differ, naming both.
+  /// Throws InputError with both sizes when they differ.
   Difference(const Image& image, const Image& reference);
 
   std::size_t pixelCount() const { return image_.rgba.size() / 4; }
 
-  /// |image - reference| of R, G and B; infinity where either is NaN or infinite. When one image is
-  /// sRGB-encoded and the other is linear, the encoded one is decoded first.
+  /// |image - reference| of R, G and B; infinity where one of them is NaN or infinite. If one image
+  /// is sRGB-encoded and the other is linear, the encoded one is decoded first.
   std::array<double, 3> at(std::size_t pixel) const;
 
   /// The largest of the three.

@@ -26,13 +26,13 @@ constexpr std::pair<const char*, MapMetric> kMetrics[] = {{"abs", MapMetric::abs
                                                           {"flip_hdr", MapMetric::flipHdr},
                                                           {"ssim", MapMetric::ssim}};
 
-/// Outside of the colour map: an error that is not a number must not pass for a large one.
+/// Not in the colour map: a value that is not finite must not look like a large error.
 constexpr Colour kNotFinite = {0, 1, 0};
-/// Neither does the frame of the legend look like an error of 0.
+/// The frame of the legend must not look like an error of 0.
 constexpr Colour kPaper = {0.2F, 0.2F, 0.2F};
 constexpr Colour kInk = {1, 1, 1};
 
-/// Narrower maps are padded: the legend has to have room for its numbers.
+/// Narrower maps are padded, because the legend needs room for its numbers.
 constexpr int kMinWidth = 64;
 
 void setPixel(Image& map, int x, int y, const Colour& colour) {
@@ -47,7 +47,7 @@ Image makePaper(int width, int height) {
   return map;
 }
 
-/// "0 ======= 0.05" in the rows from `top` on.
+/// Draws "0 ======= 0.05" in the rows from `top` on.
 void drawLegend(Image& map, int top, int unit, const std::string& label) {
   const int y = top + 2 * unit;
   const int height = tinyTextHeight(unit);
@@ -87,7 +87,7 @@ Plane<float> errorPlane(const Image& image, const Image& reference, MapMetric me
   if (metric == MapMetric::flipHdr) plane = computeHdrFlip(image, reference).map;
   if (metric == MapMetric::ssim) {
     const Ssim ssim = computeSsim(image, reference);
-    // Rounding must not make equal windows differ by less than nothing.
+    // Rounding must not make the difference of equal windows negative.
     std::transform(ssim.map.values.begin(), ssim.map.values.end(), plane.values.begin(),
                    [](double similarity) { return float(std::max(0.0, 1 - similarity)); });
   }
@@ -100,7 +100,7 @@ Plane<float> errorPlane(const Image& image, const Image& reference, MapMetric me
 
 Image drawMap(const Plane<float>& values, float scale) {
   OITLAB_CHECK(scale > 0 && std::isfinite(scale));
-  // The legend grows with the picture, which is looked at as a whole.
+  // The legend grows with the picture, so that it is legible when the picture is shown reduced.
   const int unit = std::clamp(values.width / 320, 1, 6);
   const int legendHeight = tinyTextHeight(unit) + 4 * unit;
 

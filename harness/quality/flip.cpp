@@ -33,7 +33,7 @@ Plane<float> flipMap(const Planes<float>& a, const Planes<float>& b, double pixe
     const float feature =
         flipFeatureDifference(featureA.edges.values[i], featureB.edges.values[i],
                               featureA.points.values[i], featureB.points.values[i]);
-    // Section 4.3, eq. 11. Rounding must not leave [0, 1].
+    // Section 4.3, eq. 11. Clamped, because rounding may leave [0, 1].
     map.values[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
   });
   return map;
@@ -47,18 +47,18 @@ Flip withMean(Plane<float> map) {
 }
 
 /// The ACES tone curve as a rational function, (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5): that of
-/// Narkowicz 2015 with the scene brightness of 0.6 that is usual with it multiplied in.
+/// Narkowicz 2015, with the usual exposure factor of 0.6 included.
 constexpr double kAces[6] = {2.51 * 0.36, 0.03 * 0.6, 0, 2.43 * 0.36, 0.59 * 0.6, 0.14};
 
 float toneMap(float x) {
   constexpr auto k = [](int i) { return float(kAces[i]); };
-  // The curve ends in a line beyond which squares would overflow.
+  // From here on the curve is constant to float precision, and larger squares would overflow.
   const float v = std::min(x, 1e9F);
   const float mapped = (k(0) * v * v + k(1) * v + k(2)) / (k(3) * v * v + k(4) * v + k(5));
   return std::clamp(mapped, 0.0F, 1.0F);
 }
 
-/// The value that is tone mapped to `t`.
+/// The inverse of the tone curve: the value that becomes `t`.
 double inverseToneMap(double t) {
   const double a = kAces[0] - t * kAces[3];
   const double b = kAces[1] - t * kAces[4];

@@ -26,8 +26,8 @@ constexpr Matrix inverse(const Matrix& m) {
   return result;
 }
 
-/// The matrix from linear sRGB to XYZ, worked out from the chromaticities of IEC 61966-2-1, since
-/// the printed ones are rounded.
+/// The matrix from linear sRGB to XYZ, computed from the chromaticities of IEC 61966-2-1, because
+/// printed matrices are rounded.
 constexpr Matrix makeRgbToXyz() {
   constexpr double xs[3] = {0.64, 0.30, 0.15}, ys[3] = {0.33, 0.60, 0.06};
   constexpr double whiteX = 0.3127, whiteY = 0.3290;  // D65
@@ -47,7 +47,7 @@ constexpr Matrix makeRgbToXyz() {
   return primaries;
 }
 
-/// To XYZ divided by that of white: the only form in which XYZ is used here.
+/// From linear sRGB to XYZ divided by the XYZ of white, the only form that is used here.
 constexpr Matrix makeRgbToWhiteXyz() {
   Matrix m = makeRgbToXyz();
   for (auto& row : m) {
@@ -82,8 +82,8 @@ constexpr Sensitivity kAchromatic{1.0, 0.0047, 0.0, 1.0};
 constexpr Sensitivity kRedGreen{1.0, 0.0053, 0.0, 1.0};
 constexpr Sensitivity kBlueYellow{34.1, 0.04, 13.5, 0.025};
 
-/// In pixels: three standard deviations of the widest Gaussian, in all three channels (section
-/// 4.1.1).
+/// The radius in pixels: three standard deviations of the widest Gaussian, for all channels
+/// (section 4.1.1).
 int filterRadius(double pixelsPerDegree) {
   return int(std::ceil(3 * std::sqrt(kBlueYellow.b1 / (2 * std::numbers::pi * std::numbers::pi)) *
                        pixelsPerDegree));
@@ -104,8 +104,8 @@ double sumOf(const std::vector<double>& values) {
   return sum;
 }
 
-/// Both Gaussians are products of one in x and one in y, so that the filter is the sum of two
-/// separable ones; its weights add up to 1 in two dimensions.
+/// Both Gaussians are products of one in x and one in y, so the filter is a sum of two separable
+/// filters. Its two-dimensional weights add up to 1.
 Plane<float> filterBy(const Sensitivity& s, const Plane<float>& plane, double pixelsPerDegree) {
   const int radius = filterRadius(pixelsPerDegree);
   const auto first = gaussian(s.b1, radius, pixelsPerDegree);
@@ -117,7 +117,7 @@ Plane<float> filterBy(const Sensitivity& s, const Plane<float>& plane, double pi
   const auto filter = [&](const std::vector<double>& taps, double scale) {
     std::vector<float> kernel;
     for (const double tap : taps) kernel.push_back(float(tap * std::sqrt(scale / total)));
-    // Taps that no float notices cost as much as the others.
+    // Taps that are too small to change a float are left out, because they cost as much as others.
     while (kernel.size() > 1 && kernel.front() < 1e-9F) {
       kernel.erase(kernel.begin());
       kernel.pop_back();
@@ -131,7 +131,7 @@ Plane<float> filterBy(const Sensitivity& s, const Plane<float>& plane, double pi
   return result;
 }
 
-/// Calls change(colour) for the colour of every pixel, on all cores.
+/// Calls change(colour) for every pixel, on all cores.
 template <typename Change>
 void changeColours(Planes<float>& planes, Change&& change) {
   forEachPixel(planes[0], [&](std::size_t i) {
@@ -184,7 +184,7 @@ Planes<float> perceivedColours(const Planes<float>& rgb, double pixelsPerDegree)
 }
 
 float flipColourDifference(const Colour3& a, const Colour3& b) {
-  // Section 4.1.2: large differences are pressed into the last 5%, so that small ones have room.
+  // Section 4.1.2: large differences are compressed into the last 5% of the range.
   constexpr float qc = 0.7F, pc = 0.4F, pt = 0.95F;
   static const float largest =
       std::pow(hyAb(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})), qc);  // green against blue

@@ -14,7 +14,7 @@ struct Kernels {
   std::vector<float> smooth, edge, point;
 };
 
-/// Scales what is positive to a sum of 1 and what is negative to a sum of -1.
+/// Scales the positive weights to a sum of 1 and the negative weights to a sum of -1.
 std::vector<float> balance(const std::vector<double>& taps) {
   double positive = 0, negative = 0;
   for (const double tap : taps) (tap > 0 ? positive : negative) += tap;

@@ -4,7 +4,7 @@
 
 namespace oitlab {
 
-/// How much of an edge and of a point there is at each pixel: lengths of gradients, in [0, 1].
+/// The strength of edges and of points at each pixel: lengths of gradients, in [0, 1].
 struct Features {
   Plane<float> edges, points;
 };

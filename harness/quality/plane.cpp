@@ -8,7 +8,8 @@
 namespace oitlab {
 namespace {
 
-/// Pixels whose sums are kept in registers: a fixed number, so that -O2 makes vector code of it.
+/// The number of pixels whose sums are in registers. It is constant, so that -O2 vectorizes the
+/// loop.
 constexpr std::size_t kBlock = 16;
 
 /// to[x] = the sum over k of kernel[k] * source(k)[x] for x in [0, width).
@@ -40,7 +41,7 @@ Plane<T> filterRows(const Plane<T>& plane, std::span<const T> kernel) {
   Plane<T> result(plane.width, plane.height);
   parallelFor(std::size_t(plane.height), [&](std::size_t y) {
     const T* from = plane.row(int(y));
-    // A copy with its edges drawn out, so that the inner loop has no branch.
+    // A copy with repeated edges, so that the inner loop has no branch.
     std::vector<T> padded(std::size_t(plane.width) + 2 * std::size_t(radius));
     for (int x = -radius; x < plane.width + radius; ++x)
       padded[std::size_t(x + radius)] = from[std::clamp(x, 0, plane.width - 1)];

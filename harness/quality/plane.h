@@ -9,7 +9,7 @@
 
 namespace oitlab {
 
-/// One number a pixel, rows top to bottom.
+/// One number per pixel, rows top to bottom.
 template <typename T>
 struct Plane {
   Plane() = default;
@@ -23,7 +23,7 @@ struct Plane {
   std::vector<T> values;
 };
 
-/// Calls work(i) once for the index i of every value, rows side by side on all cores.
+/// Calls work(i) once for the index i of each value, with rows in parallel on all cores.
 template <typename T, typename Work>
 void forEachPixel(const Plane<T>& plane, Work&& work) {
   parallelFor(std::size_t(plane.height), [&](std::size_t y) {
@@ -32,18 +32,18 @@ void forEachPixel(const Plane<T>& plane, Work&& work) {
   });
 }
 
-/// R, G and B, or what they were turned into.
+/// R, G and B, or the channels of another colour space.
 template <typename T>
 using Planes = std::array<Plane<T>, 3>;
 
-/// Correlates with the product of two kernels of odd length, centred: `horizontal` along the rows,
-/// then `vertical`. Beyond its edges the plane goes on with the value at the edge. On all cores.
-/// For float and double; sums in T.
+/// Correlates with the product of two centred kernels of odd length: `horizontal` along the rows,
+/// then `vertical`. Values at the edge are repeated beyond it. Runs on all cores. For float and
+/// double; sums are in T.
 template <typename T>
 Plane<T> filterSeparable(const Plane<T>& plane, std::span<const T> horizontal,
                          std::span<const T> vertical);
 
-/// The first half of it and the second, for filters that share one.
+/// The two steps, for filters that share the first one.
 template <typename T>
 Plane<T> filterRows(const Plane<T>& plane, std::span<const T> kernel);
 template <typename T>

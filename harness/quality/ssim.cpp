@@ -23,7 +23,7 @@ std::array<double, 2 * kRadius + 1> makeWindow() {
   return window;
 }
 
-/// Adds a third of the similarity of one channel to the map.
+/// Adds one third of the similarity of one channel to the map.
 void addChannel(Plane<double>& map, const Plane<double>& a, const Plane<double>& b) {
   const auto window = makeWindow();
   const auto blur = [&](const Plane<double>& plane) {

@@ -7,7 +7,7 @@
 
 namespace oitlab {
 
-/// Smaller images have no pixel whose whole window lies within them.
+/// In smaller images no pixel has its whole window inside the image.
 inline constexpr int kMinSsimSide = 11;
 
 /// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of display values: Gaussian window
@@ -16,15 +16,15 @@ inline constexpr int kMinSsimSide = 11;
 /// use_sample_covariance=False, channel_axis=-1, data_range=1) of the sRGB-encoded images: the mean
 /// over R, G and B and over the pixels whose whole window lies within the image.
 struct Ssim {
-  /// Per pixel, mean of R, G and B, in [-1, 1]; 1: the windows are equal. Within 5 pixels of an
-  /// edge the window sees the edge's value repeated.
+  /// For each pixel the mean over R, G and B, in [-1, 1]; 1 where the windows are equal. Within 5
+  /// pixels of an edge the window contains repeated values of the edge.
   Plane<double> map;
   /// Empty when a side has fewer than kMinSsimSide pixels.
   std::optional<double> mean;
 };
 
-/// Linear images are clamped to [0, 1] and sRGB-encoded first. NaN and infinity count as 0, so that
-/// the caller has to look for them. Symmetric. Sizes must be equal (checked).
+/// Linear images are clamped to [0, 1] and sRGB-encoded first. NaN and infinity count as 0; the
+/// caller has to check for them. Symmetric. Sizes must be equal (checked).
 Ssim computeSsim(const Image& image, const Image& reference);
 
 }  // namespace oitlab

@@ -8,7 +8,7 @@ namespace {
 constexpr int kColumns = 3;
 constexpr int kRows = 5;
 
-/// Five octal digits, one a row from the top; the bits of a digit are the columns.
+/// Five octal digits, one per row from the top. The bits of a digit are the columns.
 int glyphOf(char c) {
   constexpr int kDigits[10] = {075557, 026227, 071747, 071317, 055711,
                                074717, 074757, 071244, 075757, 075717};
@@ -21,7 +21,7 @@ int glyphOf(char c) {
     case '+':
       return 002720;
     case 'e':
-      return 074647;  // as E: three columns are too few for the other
+      return 074647;  // drawn as E, because a lower-case e needs more than three columns
     default:
       return 0;
   }

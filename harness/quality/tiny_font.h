@@ -7,12 +7,12 @@
 
 namespace oitlab {
 
-/// Numbers in pictures: digits, '.', '-', '+' and 'e' (other characters are blank), 3 x 5 cells a
-/// character with one column between, each cell `scale` pixels on a side.
+/// A font for numbers in pictures: digits, '.', '-', '+' and 'e'; other characters are blank. A
+/// character has 3 x 5 cells and one column of space, and a cell is `scale` pixels wide.
 int tinyTextWidth(std::string_view text, int scale);
 int tinyTextHeight(int scale);
 
-/// Draws with the upper left corner at (x, y); what lies outside of the image is clipped.
+/// Draws with the upper left corner at (x, y). Clips at the edges of the image.
 void drawTinyText(Image& image, int x, int y, int scale, std::string_view text,
                   const std::array<float, 3>& colour);
 

@@ -7,8 +7,7 @@
 namespace oitlab {
 namespace {
 
-/// As a method, since that is what a renderer makes frames with; not a registered one, since it
-/// makes no image.
+/// A method, because a Renderer renders methods. It is not registered, because it makes no image.
 class FragmentCounter : public Method {
  public:
   FragmentCounter(const Device& device, const Target& target)

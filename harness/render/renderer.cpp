@@ -11,11 +11,11 @@ using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 using Layout = vk::ImageLayout;
 
-/// A method that grows by what it counted is done after two recordings. More are allowed for
-/// counters that only show part of the need, but not without end.
+/// A method that enlarges its buffers to the counted size needs two recordings. More are allowed,
+/// because a counter may show only part of the need, but a limit ends the loop.
 constexpr int maxRecordings = 12;
 
-/// Of background.comp.
+/// The push constants of background.comp.
 struct BackgroundPush {
   glm::vec4 color;
   std::uint32_t firstRow;  // of workgroups
@@ -81,12 +81,12 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
         instrumented, timer_};
     timer_.begin(commands_, instrumented);
     frame.stage("opaque", [&] {
-      // lavapipe (Mesa 22.3) crashes where a clear, a dispatch and a render pass follow each other.
+      // lavapipe (Mesa 22.3) crashes when a clear, a dispatch and a render pass follow each other.
       if (scene_.opaqueCount() > 0 || !depthCleared_ || device_.info().isCpu()) {
         recordOpaque(frame);
         return;
       }
-      // Stages that are timed apart do not overlap.
+      // In an instrumented frame stages are timed separately, so they must not overlap.
       if (method.finishesTarget() && !instrumented) {
         frame.fillTarget = [&](std::uint32_t part) { recordBackground(frame, part); };
         return;
@@ -116,7 +116,7 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
 
 void Renderer::recordOpaque(const Frame& frame) const {
   const Commands& commands = frame.commands;
-  // Contents of the last frame are of no interest, but its accesses must be over.
+  // The last frame's contents are not needed, but its accesses must have finished.
   target_.color().transition(commands, Layout::eUndefined, Layout::eGeneral, Stage::eAllCommands,
                              Access::eMemoryWrite, Stage::eColorAttachmentOutput,
                              Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
@@ -140,8 +140,8 @@ void Renderer::recordOpaque(const Frame& frame) const {
   vk::RenderingInfo info({}, target_.area(), 1);
   info.setColorAttachments(color).setPDepthAttachment(&depth);
   commands.beginRendering(info);
-  // Also without opaque triangles: lavapipe (Mesa 22.3) crashes where a pass that only clears is
-  // followed by a dispatch and then by another pass.
+  // A draw is recorded even without opaque triangles: lavapipe (Mesa 22.3) crashes when a pass that
+  // only clears is followed by a dispatch and then by another pass.
   commands.setViewport(0,
                        vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
   commands.setScissor(0, target_.area());
@@ -158,9 +158,10 @@ void Renderer::recordOpaque(const Frame& frame) const {
       Access::eDepthStencilAttachmentWrite, Stage::eAllCommands, Access::eMemoryRead);
 }
 
-// Where nothing is opaque the depth stays that of the first frame, infinitely far everywhere:
-// methods read it and do not write it. The colour is filled by a compute shader: clears go through
-// the rasterizer, and GPUs that have little of it take longer over them than over a method.
+// In a scene without opaque surfaces the depth is infinitely far everywhere. The first frame clears
+// it, and it stays so, because methods read it and do not write it. A compute shader fills the
+// colour: clears go through the rasterizer, and on GPUs with a slow rasterizer they take longer
+// than a method.
 void Renderer::recordBackground(const Frame& frame, std::uint32_t part) const {
   if (part == 0)
     target_.color().transition(frame.commands, Layout::eUndefined, Layout::eGeneral,

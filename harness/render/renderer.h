@@ -5,35 +5,35 @@
 
 namespace oitlab {
 
-/// What one frame gave.
+/// The result of one frame.
 struct FrameResult {
   std::optional<double> frameMs;  ///< GPU time; empty when the timestamps were unusable
   std::vector<std::pair<std::string, double>> stageMs;  ///< instrumented frames only
-  double cpuMs = 0;    ///< CPU time to record and submit, waiting excluded
-  int recordings = 1;  ///< more than 1: the method grew its memory, and the last one counts
+  double cpuMs = 0;    ///< CPU time to record and submit, without waiting
+  int recordings = 1;  ///< more than 1: buffers grew; the rest is of the last recording
   std::map<std::string, std::uint64_t> counters;
 };
 
-/// Makes frames: opaque pass, then the method, one frame in flight. All methods that are compared
-/// share one Renderer, and with it scene, target and clock.
+/// Renders frames: the opaque pass, then the method. One frame is in flight at a time. All methods
+/// that are compared share one Renderer, and with it scene, target and clock.
 class Renderer {
  public:
   /// `scene` and `target` must outlive this.
   Renderer(const Device& device, const GpuScene& scene, const Target& target);
 
-  /// A method for this renderer's scene and target, which must outlive it. Throws as
-  /// MethodInfo::makeFor().
+  /// A method for this renderer's scene and target, which must outlive it. Throws what
+  /// MethodInfo::makeFor() throws.
   std::unique_ptr<Method> make(const MethodInfo& info, const Parameters& parameters) const;
 
-  /// Renders one frame and waits for it. Records again for as long as the method asks for it.
-  /// Throws DeviceError when the device fails or the method does not come to an end.
+  /// Renders one frame and waits for it. Records it again as long as the method asks for that.
+  /// Throws DeviceError when the device fails, or when the method asks too often.
   FrameResult render(Method& method, const Camera& camera, bool instrumented = false);
 
   const Device& device() const { return device_; }
   const GpuScene& scene() const { return scene_; }
   const Target& target() const { return target_; }
 
-  /// Device memory of scene, target and `method`, by buffer.
+  /// Device memory of the scene, the target and `method`, by buffer.
   std::map<std::string, std::uint64_t> memoryByBuffer(const Method& method) const;
 
  private:
@@ -54,8 +54,8 @@ class Renderer {
   vk::raii::Fence fence_;
 };
 
-/// Linear background behind every scene: a light neutral grey, on which both dark and bright layers
-/// show.
+/// The background behind every scene, linear: a light neutral grey, on which both dark and bright
+/// layers are visible.
 inline constexpr glm::vec4 backgroundColor{0.6f, 0.6f, 0.6f, 1.0f};
 
 }  // namespace oitlab

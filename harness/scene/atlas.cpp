@@ -16,14 +16,15 @@
 namespace oitlab {
 namespace {
 
-// Six levels shrink a 1024-texel texture to 32. More would cost too much in borders, which double
-// with each: at six they are an eighth of such a texture's side.
+// Six levels reduce a texture of 1024 texels to 32. Each further level doubles the width of the
+// borders, which at six levels are an eighth of that texture's side.
 constexpr int kLevels = 6;
 
-// One texel at the last level, which is what bilinear filtering needs.
+// One texel at the last level: bilinear filtering needs it.
 constexpr int kBorder = 1 << (kLevels - 1);
 
-// Cells start and end at multiples of this, so that a 4x4 block at the last level belongs to one.
+// Cells start and end at multiples of this, so that each 4x4 block of the last level belongs to one
+// cell.
 constexpr int kCell = 4 << (kLevels - 1);
 
 struct Placed {
@@ -44,7 +45,7 @@ int cellsFor(int texels) {
   return (texels + 2 * kBorder + kCell - 1) / kCell;
 }
 
-// Packs into a square of `side` cells; returns the height used, 0 when they do not fit.
+// Packs into a square of `side` cells. Returns the height used, or 0 when they do not fit.
 int pack(std::vector<Placed>& textures, int side) {
   std::vector<stbrp_rect> rects;
   for (const Placed& t : textures) rects.push_back({.id = 0, .w = t.cellColumns, .h = t.cellRows});
@@ -61,7 +62,7 @@ int pack(std::vector<Placed>& textures, int side) {
   return height;
 }
 
-// Places all, halving the largest as often as needed. Returns the size in cells.
+// Places all textures and halves the largest until they fit. Returns the size in cells.
 std::pair<int, int> place(std::vector<Placed>& textures, int maxCells) {
   const auto size = [](const Placed& t) { return std::max(t.width, t.height); };
   for (;;) {
@@ -112,7 +113,7 @@ void fill(const Texture& texture, const Placed& placed, Atlas& atlas) {
   }
 }
 
-// `textures` are indices into Scene::textures, each once.
+// `textures` are indices into Scene::textures, without duplicates.
 Atlas buildAtlas(const Scene& scene, std::vector<Placed>& textures, bool alpha, int maxSide) {
   Atlas atlas{.alpha = alpha};
   if (textures.empty()) return atlas;

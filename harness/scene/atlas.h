@@ -9,16 +9,16 @@
 
 namespace oitlab {
 
-/// Many textures in one block-compressed image with mip levels, because descriptor indexing cannot
-/// be relied on. Colours are sRGB-encoded (formats BC1_RGB_SRGB and BC3_SRGB), alpha is linear and
-/// not premultiplied.
+/// Many textures in one block-compressed image with mip levels. oitlab uses atlases because not
+/// every device has descriptor indexing. Colours are sRGB-encoded (formats BC1_RGB_SRGB and
+/// BC3_SRGB), alpha is linear and not premultiplied.
 ///
-/// Each texture lies in a border of its own texels, repeated, of at least one texel at the last
-/// level; so bilinear and trilinear filtering at atlas uv
+/// Each texture has a border of its own repeated texels, which is at least one texel wide at the
+/// last level. Therefore bilinear and trilinear filtering at the atlas coordinate
 ///     rect.offset + fract(uv) * rect.extent
-/// repeats it and never meets a neighbour, given derivatives taken of `uv` (times rect.extent), not
-/// of its fraction, and a level of at most levels.size() - 1. Anisotropic filtering would reach
-/// farther than the border.
+/// repeats the texture and never reads a neighbour. The derivatives must be those of `uv` times
+/// rect.extent, not those of the fraction, and the level at most levels.size() - 1. Anisotropic
+/// filtering would reach beyond the border.
 struct Atlas {
   struct Level {
     int width = 0;  ///< texels, a multiple of 4
@@ -28,29 +28,29 @@ struct Atlas {
 
   int width = 0;  ///< texels of level 0; 0 when there is no texture
   int height = 0;
-  bool alpha = false;  ///< BC3, else BC1
+  bool alpha = false;  ///< true: BC3, false: BC1
   std::vector<Level> levels;
 };
 
-/// Where a material's texture is; as GpuMaterial wants it.
+/// Where a material's texture is, in the form of GpuMaterial.
 struct AtlasPlacement {
   std::uint32_t atlas = 0;  ///< 0: no texture, 1: SceneAtlases::opaque, 2: ::transparent
   glm::vec4 rect{0.0f};     ///< offset.xy and extent.zw in atlas uv
 };
 
 struct SceneAtlases {
-  Atlas opaque;       ///< what is drawn without alpha: BC1 samples as alpha 1
+  Atlas opaque;       ///< textures that are drawn without alpha: BC1 samples as alpha 1
   Atlas transparent;  ///< textures with alpha, of materials that do not ignore it
   std::vector<AtlasPlacement> ofMaterial;  ///< one per material of the scene
-  std::size_t texturesHalved = 0;          ///< made smaller to fit, once or more: worth a Repair
+  std::size_t texturesHalved = 0;          ///< textures that were halved at least once to fit
 };
 
-/// Builds both, on all cores. A side has at most `maxSide` texels (a positive multiple of 128);
-/// where the textures do not fit, the largest are halved until they do. Throws InputError when
-/// there are too many for that.
+/// Builds both atlases, on all cores. A side has at most `maxSide` texels (a positive multiple of
+/// 128). If the textures do not fit, the largest are halved until they do. Throws InputError when
+/// there are too many textures for that.
 SceneAtlases buildAtlases(const Scene& scene, int maxSide = 16384);
 
-/// A level as RGBA8 (colours still sRGB-encoded): for devices without BC formats, and for tests.
+/// A level as RGBA8, colours still sRGB-encoded: for devices without BC formats, and for tests.
 std::vector<std::uint8_t> decodeAtlasLevel(const Atlas& atlas, std::size_t level);
 
 }  // namespace oitlab

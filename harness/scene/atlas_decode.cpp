@@ -1,4 +1,4 @@
-// BC1 and BC3 as the Khronos Data Format Specification 1.3, 18.1 and 18.3, describes them.
+// Decodes BC1 and BC3 (Khronos Data Format Specification 1.3, sections 18.1 and 18.3).
 #include <algorithm>
 #include <array>
 
@@ -22,7 +22,7 @@ Rgb mix(const Rgb& a, int weightA, const Rgb& b, int weightB) {
   return mixed;
 }
 
-// `bc1`: the order of the end points selects the mode with three colours and black.
+// With `bc1` the order of the end points may select the mode with three colours and black.
 void decodeColor(const std::uint8_t* block, bool bc1, std::uint8_t (&texels)[16][4]) {
   const unsigned c0 = block[0] | block[1] << 8, c1 = block[2] | block[3] << 8;
   std::array<Rgb, 4> palette{from565(c0), from565(c1)};

@@ -14,10 +14,10 @@
 namespace oitlab {
 namespace {
 
-// The near plane as a share of the scene's radius (or of the distance of an orbit). It can be this
-// close because it costs nothing: reversed float depth has the same relative precision wherever the
-// near plane is. It must be close, since an interior view stands among what it looks at, and a
-// clipped triangle in front of the eye would be missing from every method alike, unnoticed.
+// The near plane as a share of the scene's radius, or of the distance of an orbit. It can be this
+// close because reversed float depth has the same relative precision wherever the near plane is. It
+// must be this close because in an interior view objects are near the eye. A triangle clipped there
+// would be missing from the image of every method, and nobody would notice.
 constexpr float kNearShare = 0.001f;
 
 constexpr float kDefaultFov = 60.0f;
@@ -30,7 +30,8 @@ float degreesToRadians(float degrees) {
   return degrees * std::numbers::pi_v<float> / 180.0f;
 }
 
-// Numbers parted by commas; false when one does not parse, is not finite, or there are too many.
+// Parses numbers separated by commas. False when one does not parse or is not finite, or when there
+// are too many.
 bool parseNumbers(std::string_view text, std::array<float, 7>& numbers, std::size_t& count) {
   for (count = 0; count < numbers.size();) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -65,7 +66,7 @@ float parseFov(const std::string& text, float degrees) {
 glm::mat4 Camera::viewMatrix() const {
   const glm::vec3 forward = glm::normalize(target - eye);
   glm::vec3 upwards = up;
-  // Looking along `up` leaves the roll open: any other axis settles it.
+  // If the camera looks along `up`, its roll is undefined, and another axis defines it.
   if (glm::length(glm::cross(forward, upwards)) < 1e-4f * glm::length(upwards))
     upwards = std::abs(forward.y) > 0.5f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
   return glm::lookAtRH(eye, target, upwards);
@@ -99,8 +100,8 @@ DepthRange depthRange(const Camera& camera, const Bounds& bounds) {
 Camera orbitCamera(glm::vec3 center, float distance, float yaw, float pitch, float fovY) {
   const glm::vec3 outwards(std::cos(pitch) * std::sin(yaw), std::sin(pitch),
                            std::cos(pitch) * std::cos(yaw));
-  // The derivative of `outwards` by pitch. It shows the same picture as +Y would, and unlike +Y
-  // also looking straight down.
+  // The derivative of `outwards` with respect to pitch. The image is the same as with +Y, and other
+  // than +Y it also works for a camera that looks straight down.
   const glm::vec3 up(-std::sin(pitch) * std::sin(yaw), std::cos(pitch),
                      -std::sin(pitch) * std::cos(yaw));
   return {.eye = center + distance * outwards,

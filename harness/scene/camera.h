@@ -24,9 +24,9 @@ struct Camera {
   /// World to eye space; the eye looks down -Z.
   glm::mat4 viewMatrix() const;
 
-  /// Eye space to Vulkan clip space (y down, reversed depth with an infinite far plane): ndc depth
-  /// is near / distance, 1 at the near plane and 0 at infinity. Reversed float depth keeps its
-  /// relative precision over the whole range, which is what an exact sort needs.
+  /// Eye space to Vulkan clip space: y down, reversed depth with an infinite far plane. The depth
+  /// is near / distance: 1 at the near plane and 0 at infinity. Reversed float depth has the same
+  /// relative precision over the whole range, which an exact sort needs.
   glm::mat4 projectionMatrix(float aspect) const;
 };
 
@@ -35,23 +35,22 @@ struct DepthRange {
   float nearest, farthest;  ///< near plane <= nearest < farthest
 };
 
-/// The depths at which something in `bounds` can be seen: those of its corners, cut at the near
-/// plane. `farthest` is at least a thousandth beyond `nearest`, so that the range can be divided
-/// by.
+/// The range of depths of the corners of `bounds`, clipped at the near plane. `farthest` is at
+/// least 0.1% larger than `nearest`, so that the length of the range is not 0.
 DepthRange depthRange(const Camera& camera, const Bounds& bounds);
 
-/// A camera on a sphere around `center`: yaw turns about +Y (0 looks from +Z), pitch lifts the eye
-/// towards +Y. Radians; `distance` > 0.
+/// A camera on a sphere around `center`. `yaw` rotates about +Y; at 0 the camera is at +Z. `pitch`
+/// lifts the eye towards +Y. Radians; `distance` > 0.
 Camera orbitCamera(glm::vec3 center, float distance, float yaw, float pitch, float fovY);
 
-/// A camera that sees the whole of `bounds`: from direction (0.7, 0.4, 1) at twice the radius of
-/// the bounding sphere, 50 degrees of field of view.
+/// A camera that sees all of `bounds`: in direction (0.7, 0.4, 1) from the centre, at twice the
+/// radius of the bounding sphere, with a field of view of 50 degrees.
 Camera overviewCamera(const Bounds& bounds);
 
-/// Parses what `--view` takes besides names:
+/// Parses the values of `--view` that are not names:
 ///   orbit:YAW,PITCH,DISTANCE[,FOV]           about the centre of `bounds`; radians, FOV in degrees
 ///   look:EX,EY,EZ,TX,TY,TZ[,FOV]             eye and target
-/// Throws InputError naming what was found and the two forms.
+/// Throws InputError with the text and the two forms.
 Camera parseCamera(const std::string& text, const Bounds& bounds);
 
 }  // namespace oitlab

@@ -25,7 +25,7 @@ Camera CameraPath::at(float t) const {
   const float along = std::clamp(t, 0.0f, 1.0f) * float(last);
   const int i = std::min(int(along), last - 1);
   const float s = along - float(i);
-  // Beyond the ends the last step goes on as it was, so that the path does not slow down there.
+  // At the ends the path is extended by its last step, so that the camera does not slow down there.
   const auto eye = [&](int k) {
     if (k < 0) return 2.0f * keyframes_[0].eye - keyframes_[1].eye;
     if (k > last)

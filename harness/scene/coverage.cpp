@@ -7,7 +7,7 @@
 namespace oitlab {
 namespace {
 
-// A triangle cut by the near plane has four corners at most.
+// A triangle that is clipped at the near plane has at most four corners.
 struct Polygon {
   std::array<glm::dvec2, 4> corners;  // pixels
   int count = 0;
@@ -20,7 +20,7 @@ class Rasterizer {
         near_(camera.near),
         width_(width),
         height_(height),
-        // One more column, for spans that end at the right edge.
+        // One extra column, for spans that end at the right edge.
         steps_(std::size_t(width + 1) * std::size_t(height)) {}
 
   glm::dvec4 toClip(glm::vec3 p) const { return matrix_ * glm::dvec4(p, 1.0); }
@@ -61,7 +61,8 @@ class Rasterizer {
            firstCentre(low.y) < firstCentre(high.y);
   }
 
-  // Spans are kept as steps up and down, so that a big triangle costs its rows, not its area.
+  // A span is stored as a step up and a step down, so that the cost of a large triangle grows with
+  // its height, not with its area.
   void fill(const Polygon& polygon) {
     double low = 1e30, high = -1e30;
     for (int i = 0; i < polygon.count; ++i) {
@@ -104,7 +105,7 @@ class Rasterizer {
   }
 
  private:
-  // The first pixel whose centre is at or beyond x.
+  // The first pixel whose centre is at x or to the right of it.
   static double firstCentre(double x) { return std::ceil(x - 0.5); }
 
   glm::dmat4 matrix_;

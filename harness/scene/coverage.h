@@ -6,18 +6,18 @@
 
 namespace oitlab {
 
-/// What one view of a scene asks of a rasterizer, counted on the CPU: a check of generated scenes
-/// against the papers' figures that needs no device and no memory for fragments.
+/// The work that one view of a scene is for a rasterizer, counted on the CPU. It compares generated
+/// scenes with the figures of the papers, without a device and without memory for fragments.
 struct Coverage {
-  std::uint64_t samples = 0;        ///< pixel centres inside triangles; nothing culled or discarded
-  std::uint64_t coveredPixels = 0;  ///< with at least one sample
-  std::uint32_t peakDepth = 0;      ///< most samples in a pixel
-  std::uint64_t visible = 0;        ///< triangles in the frustum whose box holds a pixel centre
-  std::uint64_t visibleFront = 0;   ///< those of them that are not seen from behind
+  std::uint64_t samples = 0;  ///< pixel centres inside triangles, without culling and discards
+  std::uint64_t coveredPixels = 0;  ///< pixels with at least one sample
+  std::uint32_t peakDepth = 0;      ///< the most samples of one pixel
+  std::uint64_t visible = 0;  ///< triangles in the frustum whose bounding box has a pixel centre
+  std::uint64_t visibleFront = 0;  ///< those that are not back-facing
 };
 
-/// `width` and `height` in pixels, at least 1. Differs from a device's count by the rounding of
-/// vertices to its sub-pixel grid.
+/// `width` and `height` in pixels, at least 1. A device's count differs a little, because the
+/// device rounds vertices to its sub-pixel grid.
 Coverage measureCoverage(const Scene& scene, const Camera& camera, int width, int height);
 
 }  // namespace oitlab

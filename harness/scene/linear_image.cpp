@@ -48,8 +48,8 @@ LinearImage halved(const LinearImage& image) {
       std::uint64_t color[3] = {}, weights = 0;
       for (const LinearImage::Texel* texel : {&image.at(2 * x, 2 * y), &image.at(x1, 2 * y),
                                               &image.at(2 * x, y1), &image.at(x1, y1)}) {
-        // One more than alpha: where all four are invisible there must still be a colour, since
-        // bilinear filtering mixes it into visible neighbours.
+        // The weight is alpha plus one: where all four texels are invisible they still need a
+        // colour, because bilinear filtering mixes it into visible neighbours.
         const std::uint64_t weight = (*texel)[3] + 1u;
         for (int c = 0; c < 3; ++c) color[c] += weight * (*texel)[c];
         weights += weight;

@@ -8,8 +8,8 @@
 
 namespace oitlab {
 
-/// A texture while it is filtered: RGBA, linear, 16 bits, not premultiplied. 16 linear bits keep
-/// every 8-bit sRGB code apart, and integers average the same on every machine.
+/// A texture during filtering: RGBA, linear, 16 bits, not premultiplied. 16 linear bits distinguish
+/// all 8-bit sRGB codes, and averages of integers are the same on every machine.
 struct LinearImage {
   using Texel = std::array<std::uint16_t, 4>;
 
@@ -22,14 +22,14 @@ struct LinearImage {
   }
 };
 
-/// Decodes; with `alpha` false all is opaque.
+/// Decodes a texture. With `alpha` false the result is opaque.
 LinearImage linearImage(const Texture& texture, bool alpha);
 
-/// Half the size (rounded up, at least 1), each texel the mean of four. Colours are weighted by
-/// alpha, so that what cannot be seen does not tint what can.
+/// Half the size (rounded up, at least 1). Each texel is the mean of four. Colours are weighted by
+/// alpha, so that invisible texels do not tint visible ones.
 LinearImage halved(const LinearImage& image);
 
-/// `width` by `height` texels of the image repeated for ever, from texel (-border, -border).
+/// `width` by `height` texels of the endlessly repeated image, from texel (-border, -border) on.
 LinearImage repeated(const LinearImage& image, int border, int width, int height);
 
 /// A texel as an 8-bit texture stores it: sRGB-encoded colour, linear alpha.

@@ -43,7 +43,7 @@ Scene loadFile(const SceneSpec& spec) {
   const bool gltf = extension == ".glb" || extension == ".gltf";
   if ((!gltf && extension != ".obj") || std::filesystem::is_directory(path, ignored))
     fail<InputError>("{}: expected a .glb, .gltf or .obj file", spec.source);
-  // A knob without effect would end up as a column of the results that says something untrue.
+  // Otherwise the results would have a column for a value that has no effect.
   if (spec.detail != 1.0f)
     fail<InputError>("{}: detail is {}, but only generated scenes have that knob", spec.source,
                      spec.detail);

@@ -13,11 +13,12 @@
 namespace oitlab {
 namespace {
 
-// Half-edge 3 t + i runs from corner i of triangle t to its next corner. Candidate quads are pairs
-// of opposite half-edges, and each half-edge is in one at most; so a triangle has at most three
-// candidates, a candidate at most four that it conflicts with, and all below is linear.
+// Half-edge 3 t + i goes from corner i of triangle t to its next corner. A candidate quad is a pair
+// of opposite half-edges, and each half-edge is part of at most one candidate. Therefore a triangle
+// has at most three candidates, a candidate conflicts with at most four others, and the time below
+// is linear.
 constexpr std::uint32_t kNone = ~0u;
-constexpr std::uint32_t kUpwards = 1u << 31;  // beside a half-edge: it runs to the higher vertex
+constexpr std::uint32_t kUpwards = 1u << 31;  // flag of a half-edge: it goes to the higher vertex
 constexpr std::uint32_t kMaxTriangles = (kUpwards - 1) / 3;
 
 std::uint32_t triangleOf(std::uint32_t halfEdge) {
@@ -27,10 +28,10 @@ std::uint32_t nextCorner(std::uint32_t corner) {
   return corner == 2 ? 0 : corner + 1;
 }
 
-/// For each vertex the first one with the same 32 bytes: files without an index buffer, and seams
-/// that are none, still have quads.
+/// For each vertex the index of the first vertex with the same 32 bytes. With it, files without an
+/// index buffer and duplicated vertices still give quads.
 std::vector<std::uint32_t> weld(const std::vector<Vertex>& vertices) {
-  // Open addressing, at most two thirds full.
+  // A hash table with open addressing, at most two thirds full.
   std::vector<std::uint32_t> table(std::bit_ceil(vertices.size() * 3 / 2 + 1), kNone);
   std::vector<std::uint32_t> first(vertices.size());
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
@@ -69,7 +70,7 @@ class Pairing {
       }
       const std::uint32_t other = opposite_[chosen_[t]], u = triangleOf(other);
       if (u < t) continue;
-      // Mine runs from c to a, the other's from a to c.
+      // This half-edge goes from c to a, the opposite one from a to c.
       const std::uint32_t c = chosen_[t] % 3, a = nextCorner(c), b = nextCorner(a);
       const std::uint32_t d = nextCorner(nextCorner(other % 3));
       mesh.quads.emplace_back(mine[int(a)], mine[int(b)], mine[int(c)], triangles_[u][int(d)]);
@@ -79,8 +80,8 @@ class Pairing {
   }
 
  private:
-  /// Fills opposite_. Half-edges are gathered by their lower vertex, and each vertex's are sorted
-  /// by the higher one, then by direction, then by id, which are the bits of a key.
+  /// Fills opposite_. Half-edges are grouped by their lower vertex. Each group is sorted by a key:
+  /// the higher vertex, then the direction, then the id.
   void findCandidates(const std::vector<std::uint32_t>& welded) {
     const auto ends = [&](std::uint32_t h) {
       const glm::uvec3& t = triangles_[triangleOf(h)];
@@ -112,8 +113,8 @@ class Pairing {
             edge, last, [&](std::uint64_t key) { return key >= ((top << 32) | kUpwards); });
         const auto end =
             std::find_if(up, last, [&](std::uint64_t key) { return key >> 32 != top; });
-        // The n-th one way with the n-th the other way. A closed surface has one of each; where
-        // many triangles meet, all pairs would be quadratic.
+        // Pairs the n-th half-edge of one direction with the n-th of the other. A closed surface
+        // has one of each. Where many triangles meet, trying all pairs would be quadratic.
         for (auto a = edge, b = up; a != up && b != end; ++a, ++b)
           addCandidate(halfEdge(*a), halfEdge(*b));
         edge = end;
@@ -124,7 +125,7 @@ class Pairing {
   void addCandidate(std::uint32_t h, std::uint32_t g) {
     const std::uint32_t t = triangleOf(h), u = triangleOf(g);
     if (t == u) return;
-    // Two triangles with more than one edge in common are one quad all the same.
+    // Two triangles that share more than one edge are still only one candidate.
     for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i)
       if (opposite_[i] != kNone && triangleOf(opposite_[i]) == u) return;
     opposite_[h] = g;
@@ -136,20 +137,20 @@ class Pairing {
     return g != kNone && chosen_[triangleOf(h)] == kNone && chosen_[triangleOf(g)] == kNone;
   }
 
-  /// How many open candidates the candidate of half-edge h conflicts with.
+  /// The number of open candidates that the candidate of half-edge h conflicts with.
   std::uint32_t degree(std::uint32_t h) const {
     return open_[triangleOf(h)] + open_[triangleOf(opposite_[h])] - 2u;
   }
 
-  /// Fills chosen_. A candidate is named by the lower of its half-edges. Degrees only fall: a
-  /// candidate is put into the bucket of its new degree each time, and what is found in a bucket
-  /// that it has left is passed over.
+  /// Fills chosen_. A candidate is named by the lower of its half-edges. Degrees only decrease.
+  /// Each time one does, the candidate is also put into the bucket of its new degree; its old
+  /// entries are skipped when they are found.
   void chooseGreedily() {
     chosen_.assign(triangles_.size(), kNone);
     open_.assign(triangles_.size(), 0);
     for (std::uint32_t h = 0; h < opposite_.size(); ++h)
       open_[triangleOf(h)] += opposite_[h] != kNone;
-    // Backwards, since buckets are emptied from their end: low ids first.
+    // In reverse order, because buckets are emptied from their end: low ids come first.
     for (auto h = std::uint32_t(opposite_.size()); h-- > 0;)
       if (opposite_[h] != kNone && h < opposite_[h]) buckets_[degree(h)].push_back(h);
     for (std::size_t least = 0; least < buckets_.size();) {
@@ -168,7 +169,7 @@ class Pairing {
 
   void choose(std::uint32_t h) {
     const std::uint32_t pair[] = {triangleOf(h), triangleOf(opposite_[h])};
-    // The triangles whose candidates with one of the pair are closed by this.
+    // The triangles that had a candidate with one of the pair, which is closed now.
     std::array<std::uint32_t, 4> neighbours;
     std::size_t count = 0;
     for (const std::uint32_t t : pair)
@@ -187,9 +188,10 @@ class Pairing {
   }
 
   const std::vector<glm::uvec3>& triangles_;
-  std::vector<std::uint32_t> opposite_;  // per half-edge: the other one of its candidate, or kNone
-  std::vector<std::uint32_t> chosen_;    // per triangle: its half-edge of the chosen quad, or kNone
-  std::vector<std::uint8_t> open_;       // per triangle: candidates with triangles not yet chosen
+  std::vector<std::uint32_t>
+      opposite_;                       // per half-edge: the opposite one of its candidate, or kNone
+  std::vector<std::uint32_t> chosen_;  // per triangle: its half-edge in the chosen quad, or kNone
+  std::vector<std::uint8_t> open_;     // per triangle: its candidates with free triangles
   std::array<std::vector<std::uint32_t>, 5> buckets_;  // candidates by degree
 };
 

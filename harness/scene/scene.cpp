@@ -17,7 +17,7 @@ float fromSnorm16(std::uint32_t bits) {
   return std::max(float(std::int16_t(bits & 0xffffu)) / 32767.0f, -1.0f);
 }
 
-// Zero counts as positive: the folds of the map must not collapse.
+// Zero counts as positive, because a sign of 0 would collapse the folds of the map.
 glm::vec2 signs(glm::vec2 v) {
   return {v.x < 0.0f ? -1.0f : 1.0f, v.y < 0.0f ? -1.0f : 1.0f};
 }
@@ -86,8 +86,8 @@ void computeBounds(Scene& scene) {
 
 void overrideOpacity(Scene& scene, float opacity) {
   for (Material& material : scene.materials) {
-    // Alpha shrinks by this factor, so the cutoff does too and cuts the same texels as before.
-    // Where nothing was to be seen (alpha 0 under a cutoff), nothing ever is: no alpha reaches 2.
+    // The cutoff is scaled by the same factor as alpha, so that it cuts the same texels as before.
+    // A material that was invisible (alpha 0 under a cutoff) stays invisible: no alpha reaches 2.
     if (material.alphaCutoff > 0.0f)
       material.alphaCutoff = material.baseColor.a > 0.0f
                                  ? material.alphaCutoff * opacity / material.baseColor.a

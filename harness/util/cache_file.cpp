@@ -11,8 +11,8 @@
 namespace oitlab {
 namespace {
 
-// The file: this, then the content. A machine only ever meets its own cache, so the byte order is
-// its own.
+// The file is this header and then the content. A cache is only read on the machine that wrote it,
+// so numbers are in the machine's own byte order.
 struct Header {
   char magic[8] = {'o', 'i', 't', 'c', 'a', 'c', 'h', '1'};
   std::uint64_t contentBytes = 0;
@@ -28,7 +28,7 @@ std::uint64_t checksumOf(std::string_view key, std::string_view content) {
 }  // namespace
 
 std::optional<std::string> readCached(const std::filesystem::path& path, std::string_view key) {
-  // Anything but a regular file may never end (a device) or never begin (a FIFO).
+  // Reading anything but a regular file may never end (a device) or never start (a FIFO).
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
   std::string file;

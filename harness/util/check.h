@@ -5,15 +5,16 @@
 
 #include <fmt/format.h>
 
-/// Assertions for our own logic, kept in release builds: a measurement made by a program in a wrong
-/// state is worth nothing. Never used for input (that is InputError).
+/// An assertion about the program's own logic. It is also in release builds, because the
+/// measurements of a program in a wrong state are worthless. Wrong input is not its business: that
+/// is an InputError.
 #define OITLAB_CHECK(condition)                                          \
   do {                                                                   \
     if (!(condition)) [[unlikely]]                                       \
       ::oitlab::detail::checkFailed(#condition, __FILE__, __LINE__, ""); \
   } while (false)
 
-/// Compares two printable values and prints both when they differ from what was claimed.
+/// Asserts a comparison of two printable values, and prints both when it is false.
 #define OITLAB_CHECK_OP(a, op, b)                                                  \
   do {                                                                             \
     const auto& checkA = (a);                                                      \

@@ -10,7 +10,7 @@
 namespace oitlab {
 namespace {
 
-/// "[json.exception.parse_error.101] parse error at line 1, column 2: <this>".
+/// The part after the prefix: "[json.exception.parse_error.101] parse error at line 1, column 2: ".
 std::string_view reasonOf(std::string_view message) {
   const std::size_t place = message.find(", column ");
   const std::size_t colon = message.find(": ", place == message.npos ? 0 : place);
@@ -31,8 +31,8 @@ nlohmann::json readJsonFile(const std::filesystem::path& path) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
-    // The byte counts from 1 and is the last one read, one past the end for a text that stops
-    // early.
+    // The byte counts from 1. It is the last one that was read; for a text that ends too early it
+    // is one beyond the end.
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
     const std::string_view before = std::string_view(text).substr(0, offset);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');

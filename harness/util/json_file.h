@@ -6,13 +6,13 @@
 
 namespace oitlab {
 
-/// Writes indented JSON through a temporary name (see writeFileAtomically). NaN and infinities
-/// become null, since JSON has neither; bytes that are not UTF-8 (a driver's name) become U+FFFD.
-/// Throws InputError naming the file when it cannot be written.
+/// Writes indented JSON with writeFileAtomically(). NaN and infinity become null, because JSON has
+/// neither. Bytes that are not UTF-8 (in a driver's name, say) become U+FFFD. Throws InputError
+/// with the file's name when it cannot be written.
 void writeJsonFile(const std::filesystem::path& path, const nlohmann::json& value);
 
-/// Throws InputError naming the file when it cannot be read; with line, column and byte when it is
-/// not JSON.
+/// Throws InputError with the file's name when it cannot be read, and with line, column and byte
+/// when it is not JSON.
 nlohmann::json readJsonFile(const std::filesystem::path& path);
 
 }  // namespace oitlab

@@ -10,9 +10,9 @@
 
 namespace oitlab {
 
-/// Calls work(i) once for each i in [0, count), on all cores, in no order; returns when all is
-/// done. The first exception thrown by `work` ends the rest early and is thrown again here.
-/// Preparation only: never while something is being timed.
+/// Calls work(i) once for each i in [0, count), on all cores and in any order, and returns when all
+/// calls have returned. After the first exception of `work` no more calls start, and the exception
+/// is thrown again here. For preparation only, never while something is timed.
 template <typename Work>
 void parallelFor(std::size_t count, Work&& work) {
   std::atomic<std::size_t> next{0};

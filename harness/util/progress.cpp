@@ -60,7 +60,7 @@ void Progress::begin(std::string_view label) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
     const auto secondsLeft = estimateSecondsLeft(done_, total_, elapsed.count());
     clear();
-    // A terminal wraps once its last column is written.
+    // A terminal may start a new line once its last column is written.
     const std::size_t columns = terminalColumns(out_) - 1;
     fmt::print(out_, "{}", progressLine(done_, total_, label, secondsLeft, columns));
     std::fflush(out_);
@@ -78,7 +78,7 @@ void Progress::finish() {
 
 void Progress::clear() {
   if (!shown_) return;
-  // To the first column, and erase to the end of the line.
+  // Go to the first column and erase to the end of the line.
   fmt::print(out_, "\r\x1b[K");
   std::fflush(out_);
   shown_ = false;

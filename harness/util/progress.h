@@ -9,23 +9,23 @@
 
 namespace oitlab {
 
-/// Seconds that the remaining cells take if they take as long as the done ones did on average; none
-/// while no cell is done or the clock has not moved.
+/// The seconds for the remaining cells if they take as long as the finished ones did on average.
+/// Empty while no cell is finished or no time has passed.
 std::optional<double> estimateSecondsLeft(std::size_t done, std::size_t total,
                                           double elapsedSeconds);
 
 /// "00:12", "12:34" or "1:02:03", rounded up to whole seconds; "100 h" and more in hours.
 std::string formatSeconds(double seconds);
 
-/// "[ 3/12] boxes reference 640x360   00:12 left": cells done, the cell now, the estimate. Cut to
-/// `columns` at the label, so that a line that is rewritten in place never wraps.
+/// "[ 3/12] boxes reference 640x360   00:12 left": finished cells, the current cell, the estimate.
+/// The label is cut so that the line has at most `columns`: a line that is rewritten must not wrap.
 std::string progressLine(std::size_t done, std::size_t total, std::string_view label,
                          std::optional<double> secondsLeft, std::size_t columns);
 
 bool isTerminal(std::FILE* file);
 
-/// How far a sweep is: one line, rewritten in place and cleared at the end. Where `out` is a file
-/// or a pipe nothing is printed, or with `verbose` one plain line a cell.
+/// Shows the progress of a sweep in one line, which is rewritten in place and cleared at the end.
+/// If `out` is a file or a pipe it prints nothing, or with `verbose` one plain line per cell.
 class Progress {
  public:
   explicit Progress(std::size_t total, bool enabled = isTerminal(stderr), bool verbose = false,
@@ -34,15 +34,14 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A cell begins. `total` should count cells that are to be run: those that a resumed sweep
-  /// already has would make the estimate too good.
+  /// A cell starts. `total` should count the cells that will be run: with the cells that a resumed
+  /// sweep already has, the estimate would be too low.
   void begin(std::string_view label);
 
-  /// The cell is done; after the last one the line is cleared.
+  /// The cell is finished. After the last one the line is cleared.
   void finish();
 
-  /// Clears the line, for a message that is to be printed in between; the next begin() shows it
-  /// again.
+  /// Clears the line before another message is printed. The next begin() shows it again.
   void clear();
 
  private:

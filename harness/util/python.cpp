@@ -16,7 +16,7 @@
 namespace oitlab {
 namespace {
 
-/// Runs a program with its output as ours (or thrown away); its exit code, or 127.
+/// Runs a program whose output goes where ours does, or nowhere. Returns its exit code, or 127.
 int runCommand(const std::vector<std::string>& arguments, bool quiet) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

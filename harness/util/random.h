@@ -5,8 +5,8 @@
 namespace oitlab {
 
 /// PCG-XSH-RR 64/32 (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
-/// Algorithms for Random Number Generation", 2014). The standard library's distributions differ
-/// from one implementation to the next, and a generated scene must be the same everywhere.
+/// Algorithms for Random Number Generation", 2014). The distributions of standard libraries differ,
+/// but a generated scene must be the same everywhere.
 class Pcg32 {
  public:
   explicit Pcg32(std::uint64_t seed, std::uint64_t stream = 0) : increment_(2 * stream + 1) {
@@ -23,7 +23,7 @@ class Pcg32 {
     return (shifted >> turn) | (shifted << (-turn & 31u));
   }
 
-  /// Uniform in [0, 1), in steps of 2^-24: each is a float exactly.
+  /// Uniform in [0, 1), a multiple of 2^-24, which a float represents exactly.
   float uniform() { return float(next() >> 8) * 0x1p-24f; }
 
   /// Uniform in [low, high).

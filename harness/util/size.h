@@ -7,8 +7,8 @@
 
 namespace oitlab {
 
-/// "1280x720" -> {1280, 720}; nothing when the text is not two whole numbers of at most six digits
-/// with an x between. Zero passes: whether a size can be had is for the device to say.
+/// "1280x720" -> {1280, 720}. Empty when the text is not two whole numbers of at most six digits
+/// with an x between them. Zero is accepted here; the device says which sizes it supports.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parseSize(const std::string& text);
 
 }  // namespace oitlab

@@ -14,8 +14,8 @@ std::string lowerCase(std::string_view text) {
   return lower;
 }
 
-/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours
-/// cost 1 each. A swap is the commonest slip of the hand, so it must not count as two.
+/// The optimal string alignment distance: insertions, deletions, substitutions and swaps of
+/// neighbours cost 1 each. Swaps are common typing errors, so they must not count as two.
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> beforeLast(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -35,7 +35,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// An abbreviation: one letter says too little to guess from.
+/// Whether it is an abbreviation. A single letter is too short to guess from.
 bool abbreviates(const std::string& shorter, const std::string& whole) {
   return shorter.size() >= 2 && whole.size() > shorter.size() && whole.starts_with(shorter);
 }
@@ -51,7 +51,7 @@ std::string didYouMean(std::string_view found, const std::vector<std::string>& c
   for (const std::string& candidate : candidates) {
     const std::string lowerCandidate = lowerCase(candidate);
     const std::size_t distance = editDistance(lowerFound, lowerCandidate);
-    // A distance of the whole word means that no letter was kept: that is another word, not a slip.
+    // If the distance is the length of the word no letter is the same: it is another word.
     const bool sharesLetters = distance < std::max(lowerFound.size(), lowerCandidate.size());
     if (sharesLetters && distance < closestDistance) {
       closestDistance = distance;

@@ -6,13 +6,14 @@
 
 namespace oitlab {
 
-/// " (did you mean 'x'?)" for the candidate closest to `found` by edit distance, when it is close
-/// enough to be a slip (at most a third of the letters of `found`, at least one); failing that, for
-/// the shortest candidate that begins with `found` ('ref' -> 'reference'); else "". Upper and lower
-/// case are the same, a swap of two neighbouring letters is one slip, the first of equals wins.
+/// " (did you mean 'x'?)" for the candidate with the smallest edit distance to `found`, if the
+/// distance is at most a third of the letters of `found` (at least 1). Otherwise it is the shortest
+/// candidate that starts with `found`, such as 'reference' for 'ref', or else "". The case of
+/// letters does not matter, a swap of two neighbouring letters is one edit, and of equal candidates
+/// the first is taken.
 std::string didYouMean(std::string_view found, const std::vector<std::string>& candidates);
 
-/// "a, b, c" for messages.
+/// "a, b, c", for messages.
 std::string joinNames(const std::vector<std::string>& names);
 
 }  // namespace oitlab

@@ -16,21 +16,21 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-/// Hidden and with an extension of its own, so that no `*.json` picks it up; random, since any
-/// number of processes and machines may write into one folder; short, whatever the length of the
-/// target's.
+/// A name that is hidden and has its own extension, so that `*.json` does not match it. It is
+/// random, because many processes and machines may write into one folder, and short, however long
+/// the target's name is.
 std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
   std::random_device random;
   const std::uint64_t id = (std::uint64_t(random()) << 32) | random();
   return path.parent_path() / fmt::format(".oitlab-{:016x}.tmp", id);
 }
 
-/// Whether all of it reached the system; errno says why not.
+/// Returns whether everything was written; if not, errno is set.
 bool writeNewFile(const std::filesystem::path& path, std::string_view bytes) {
   File file(std::fopen(path.c_str(), "wbx"));
   if (!file) return false;
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  // A full disk may show only when the buffer is flushed.
+  // A full disk may only be noticed when the buffer is flushed.
   return written && std::fflush(file.get()) == 0;
 }
 
@@ -43,7 +43,7 @@ std::string readTextFile(const std::filesystem::path& path) {
   char chunk[1 << 16];
   while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, file.get()))
     bytes.append(chunk, count);
-  // A folder opens like a file and fails here.
+  // A folder can be opened like a file, and reading it fails here.
   if (std::ferror(file.get()))
     fail<InputError>("{}: cannot be read: {}", path.string(), std::strerror(errno));
   return bytes;

@@ -6,13 +6,14 @@
 
 namespace oitlab {
 
-/// The whole file, byte for byte (so a binary file too). Throws InputError naming the file and what
-/// the system says when it cannot be read.
+/// The whole file, byte for byte, so also a binary file. Throws InputError with the file's name and
+/// the system's message when it cannot be read.
 std::string readTextFile(const std::filesystem::path& path);
 
-/// Writes the whole file under a temporary name in the same folder and renames it, so that a
-/// reader, or the next run after a kill, sees the old file, the new one or none, never half of one.
-/// The folder must exist. Throws InputError naming the file; the temporary is removed then.
+/// Writes the whole file under a temporary name in the same folder and renames it. Thus a reader,
+/// or the next run after a kill, sees the old file, the new file or none, but never a part of one.
+/// The folder must exist. On failure it removes the temporary file and throws InputError with the
+/// file's name.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace oitlab

@@ -1,4 +1,4 @@
-// What the harness itself costs on the CPU. Run on a quiet machine:
+// CPU time of the harness itself. Run it on a quiet machine:
 //   build/release/oitlab_benchmarks
 #include <benchmark/benchmark.h>
 
@@ -8,10 +8,10 @@
 namespace oitlab {
 namespace {
 
-/// CPU time to record and submit one frame, without the wait for the device: the clock runs from
-/// before the frame constants are written until vkQueueSubmit has returned (FrameResult::cpuMs).
-/// The target is small, so that the device's work (on llvmpipe: other threads of the same CPU) is
-/// over before the next frame begins and does not compete with the recording.
+/// CPU time to record and submit one frame, without the wait for the device: from before the frame
+/// constants are written until vkQueueSubmit has returned (FrameResult::cpuMs). The target is
+/// small, so that the device finishes before the next frame starts. On llvmpipe the device is other
+/// threads of the same CPU, which would compete with the recording.
 void recordAndSubmit(benchmark::State& state, const char* sceneName, const char* methodName) {
   try {
     const Device device({});

@@ -1,5 +1,5 @@
-// What a scene costs before the first frame, on one core unless it says otherwise. Throughput must
-// not fall with size: all of it is meant to be linear.
+// Time for a scene before the first frame, on one core unless noted. All of it should be linear, so
+// the throughput must not fall with size.
 #include <benchmark/benchmark.h>
 #include <cstdlib>
 
@@ -10,7 +10,8 @@
 namespace oitlab {
 namespace {
 
-/// `cells` x `cells` cells of two triangles; `shuffled`: in random order, the worst for caches.
+/// `cells` x `cells` cells of two triangles. With `shuffled` they are in random order, the worst
+/// case for caches.
 Scene grid(std::uint32_t cells, bool shuffled) {
   Scene scene;
   scene.name = "grid";
@@ -49,14 +50,14 @@ BENCHMARK_CAPTURE(pairQuads, shuffled, true)
     ->Arg(707)
     ->Unit(benchmark::kMillisecond);
 
-/// Generated scenes at full detail: making, bounds and views.
+/// Makes generated scenes at full detail, with bounds and views.
 void load(benchmark::State& state, const char* name) {
   std::size_t triangles = 0;
   for (auto _ : state) triangles = loadScene({name, {}, 1.0f}).triangles.size();
   state.SetItemsProcessed(state.iterations() * std::int64_t(triangles));
   state.SetLabel("triangles");
 }
-/// A file of the user's: OITLAB_SCENE=path.glb.
+/// Loads a file of the user: OITLAB_SCENE=path.glb.
 void loadFile(benchmark::State& state) {
   const char* path = std::getenv("OITLAB_SCENE");
   if (path == nullptr) return state.SkipWithError("OITLAB_SCENE names no file");
@@ -67,7 +68,7 @@ BENCHMARK(loadFile)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(load, boxes, "boxes")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(load, teapot, "teapot")->Unit(benchmark::kMillisecond);
 
-/// Two textures of noise with alpha, on all cores.
+/// Builds the atlases of two noise textures with alpha, on all cores.
 void atlas(benchmark::State& state) {
   Scene scene;
   Pcg32 random(1);

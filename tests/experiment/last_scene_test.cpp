@@ -22,7 +22,7 @@ TEST_F(LastSceneGpu, IsKeptUntilAnotherIsWanted) {
   EXPECT_EQ(last.get({"planes", {}, 0.01f}).scene().name, "planes");
 }
 
-// A scene that cannot be loaded leaves none, and the next one is loaded as ever.
+// After a scene that cannot be loaded there is none, and the next one is loaded as usual.
 TEST_F(LastSceneGpu, SurvivesASceneThatIsNotThere) {
   LastScene last(sharedDevice());
   const SceneSpec boxes{"boxes", {}, 0.01f};

@@ -1,4 +1,4 @@
-// Counters come back whether or not the CPU maps the device's memory.
+// The CPU reads counters, whether or not it can map the device's memory.
 #include "gpu/counters_buffer.h"
 
 #include "gpu/barrier.h"
@@ -26,7 +26,7 @@ TEST_F(CountersBufferGpu, IsReadMappedOrThroughACopy) {
       recordReadback(commands, {&counters});
     });
     EXPECT_EQ(counters.read<std::uint32_t>(), 7u);
-    // As in a frame: written by a compute shader.
+    // A compute shader writes them, as in a frame.
     device.runOnce([&](const Commands& commands) {
       const Buffer* const buffers[] = {&counters.buffer()};
       zeroFill.record(commands, buffers);

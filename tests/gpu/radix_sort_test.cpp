@@ -1,4 +1,4 @@
-// The device's sort against the standard library's.
+// Compares the device's sort with std::stable_sort.
 #include "gpu/radix_sort.h"
 
 #include <numeric>
@@ -60,7 +60,7 @@ void expectSorted(const std::vector<std::uint32_t>& keys, const std::string& lab
   EXPECT_TRUE(sorted.values == order) << label << ", " << keys.size() << " values";
 }
 
-// One element, part of a block, just a block, one more, many.
+// One element, part of a block, exactly a block, one more, and many.
 TEST_F(RadixSortGpu, SortsAsTheStandardLibraryDoes) {
   Pcg32 random(5);
   for (const std::size_t count : {1, 2, 127, 2047, 2048, 2049, 70000}) {
@@ -73,7 +73,7 @@ TEST_F(RadixSortGpu, SortsAsTheStandardLibraryDoes) {
   expectSorted(std::vector<std::uint32_t>(5000, ~0u), "one key");
 }
 
-// More blocks than a workgroup of the scan takes at once.
+// More blocks than a workgroup of the scan processes at once.
 TEST_F(RadixSortGpu, SortsMillions) {
   Pcg32 random(6);
   std::vector<std::uint32_t> keys(2048 * 2048 + 12345);

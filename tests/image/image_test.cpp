@@ -36,7 +36,7 @@ Image makeRamp(int width, int height) {
   return image;
 }
 
-/// Writes a PNG of any kind, as readImage must take what other programs wrote.
+/// Writes a PNG of any kind, because readImage() must read the files of other programs.
 void writePng(const std::filesystem::path& path, int colourType, int bitDepth, int width,
               std::vector<std::vector<png_byte>> rows, std::vector<png_color> palette = {},
               int interlace = PNG_INTERLACE_NONE) {
@@ -87,7 +87,7 @@ std::string readFailure(const std::filesystem::path& path) {
 TEST(Srgb, MatchesTheStandardAtKnownPoints) {
   EXPECT_EQ(srgbEncode(0), 0);
   EXPECT_NEAR(srgbEncode(1), 1, 1e-6);
-  EXPECT_NEAR(srgbEncode(0.001F), 0.01292, 1e-7);   // the straight piece
+  EXPECT_NEAR(srgbEncode(0.001F), 0.01292, 1e-7);   // the linear part
   EXPECT_NEAR(srgbEncode(0.21404114F), 0.5, 1e-6);  // mid grey
   EXPECT_NEAR(srgbDecode(0.5F), 0.21404114, 1e-6);
   for (int i = 0; i <= 255; ++i) EXPECT_NEAR(srgbEncode(srgbDecode(i / 255.0F)), i / 255.0F, 2e-6);
@@ -117,7 +117,7 @@ TEST_F(ImageFile, PngEncodesLinearAndRoundsAndClamps) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   writeImage(folder_ / "a.png", makeImage(2, 1, {0.21404114F, -1, 7, 1, nan, infinity, 0, 1}));
-  // Mid grey is 127.5 of 255; 7 is clamped; a NaN must not become an arbitrary byte.
+  // Mid grey is 127.5 of 255, 7 is clamped, and a NaN must not become an arbitrary byte.
   const Image read = readImage(folder_ / "a.png");
   EXPECT_NEAR(read.rgba[0], 127.5 / 255, 0.51 / 255);
   EXPECT_EQ(read.rgba[1], 0);
@@ -140,7 +140,7 @@ TEST_F(ImageFile, PngOfEveryKindIsRead) {
            {{255, 0, 0}, {0, 51, 255}});
   EXPECT_THAT(readImage(folder_ / "palette.png").rgba, ElementsAre(0, 0.2F, 1, 1, 1, 0, 0, 1));
 
-  // 16 bits are kept (big-endian in the file): 0x0100 is 256 of 65535, not 1 of 255.
+  // All 16 bits are read (big-endian in the file): 0x0100 is 256 of 65535, not 1 of 255.
   writePng(folder_ / "deep.png", PNG_COLOR_TYPE_RGB, 16, 1, {{0x01, 0x00, 0xFF, 0xFF, 0, 1}});
   EXPECT_THAT(readImage(folder_ / "deep.png").rgba,
               ElementsAre(256.0F / 65535, 1, 1.0F / 65535, 1));
@@ -155,7 +155,7 @@ TEST_F(ImageFile, PngOfEveryKindIsRead) {
 TEST_F(ImageFile, ExrKeepsFloatsBitForBit) {
   Image image = makeRamp(5, 3);
   image.rgba[0] = 1e-30F;
-  image.rgba[1] = -70000;  // more than a half holds
+  image.rgba[1] = -70000;  // beyond the range of a half float
   image.rgba[2] = std::numeric_limits<float>::infinity();
   writeImage(folder_ / "a.exr", image);
   const Image read = readImage(folder_ / "a.exr");
@@ -198,7 +198,7 @@ TEST_F(ImageFile, MalformedFilesAreNamed) {
   for (const std::string kind : {"png", "exr"}) {
     const std::string whole = readTextFile(folder_ / ("whole." + kind));
     const std::filesystem::path path = folder_ / ("broken." + kind);
-    // Cut everywhere: within the signature, the header, the pixels, the end.
+    // Cut at every place: in the signature, the header, the pixels and the end.
     for (const std::size_t size : {std::size_t(0), std::size_t(3), std::size_t(20),
                                    whole.size() / 8, whole.size() / 2, whole.size() - 30}) {
       writeText(path, whole.substr(0, size));
@@ -216,7 +216,7 @@ TEST_F(ImageFile, MalformedFilesAreNamed) {
 TEST_F(ImageFile, AbsurdSizesAreRefusedBeforeTheyAreAllocated) {
   writeImage(folder_ / "a.png", makeRamp(1, 1));
   std::string bytes = readTextFile(folder_ / "a.png");
-  bytes[17] = 1;  // width 0x00010001; libpng would refuse the checksum, so it is mended
+  bytes[17] = 1;  // width 0x00010001; the checksum is corrected, or libpng would reject it
   const uLong checksum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data() + 12), 17);
   for (int i = 0; i < 4; ++i) bytes[29 + i] = char(checksum >> (24 - 8 * i));
   writeText(folder_ / "wide.png", bytes);
@@ -255,7 +255,7 @@ TEST_F(ImageFile, FailedWritesLeaveNothing) {
   EXPECT_THAT(
       messageOf<InputError>([&] { writeImage(folder_ / "absent" / "a.png", makeRamp(1, 1)); }),
       HasSubstr("a.png: cannot be written: No such file"));
-  // A target that cannot be replaced: the temporary was written, so it must go.
+  // The target cannot be replaced after the temporary file was written, which must be removed.
   std::filesystem::create_directories(folder_ / "a.exr" / "inner");
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(folder_ / "a.exr", makeRamp(1, 1)); }),
               HasSubstr("a.exr: cannot be written"));

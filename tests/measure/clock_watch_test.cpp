@@ -1,4 +1,4 @@
-// When a GPU's clock counts as settled, by made-up devices whose time is made up too.
+// When a GPU's clock counts as settled, tested with simulated devices and simulated time.
 #include "measure/clock_watch.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 namespace oitlab::testing {
 namespace {
 
-constexpr double fullMs = 0.5;  // of the probe at full clock
+constexpr double fullMs = 0.5;  // time of the probe at full clock
 
-/// A device whose clock (1 is full) is what `clock` says of the time and of the seconds of load
-/// since it last idled. Only probes and pass() take time.
+/// A device whose clock is a function `clock` of the time and of the seconds of load since it last
+/// idled; 1 is the full clock. Only probes and pass() take time.
 struct MadeUpDevice {
   std::function<double(double now, double loaded)> clock;
   double now = 0, loaded = 0;
@@ -29,7 +29,7 @@ struct MadeUpDevice {
     now += seconds;
     loaded = 0;
   }
-  /// A settle(): its level, and how long it took.
+  /// The result of a settle(): its level, and its duration.
   std::pair<double, double> settle() {
     const double begin = now;
     const double level = watch.settle();
@@ -37,7 +37,7 @@ struct MadeUpDevice {
   }
 };
 
-/// As an NVIDIA H200's: a fifth of full for 20 ms after idling, then it rises.
+/// The clock of an NVIDIA H200: a fifth of the full clock for 20 ms after idling, then rising.
 double governed(double, double loaded) {
   return std::clamp(0.2 + (loaded - 0.02) / 0.05, 0.2, 1.0);
 }
@@ -69,7 +69,7 @@ TEST(ClockWatch, ADeviceThatIdledIsUnderLoadUntilItsClockIsFullAgain) {
 }
 
 TEST(ClockWatch, AfterIdlingAClockThatLooksFullIsNotBelievedAtOnce) {
-  // It notices late that it idled.
+  // The device notices late that it has idled.
   MadeUpDevice device{
       [](double, double loaded) { return loaded < 0.01 || loaded > 0.04 ? 1.0 : 0.2; }};
   device.settle();

@@ -1,5 +1,5 @@
-// Measuring in blocks on a device whose clock changes, and the probe that tells. The clock is made
-// up: that of a CPU device is not the program's to change.
+// Measuring in blocks on a device whose clock changes, and the clock probe. The clock is simulated,
+// because the program cannot change that of a CPU device.
 #include "measure/measure.h"
 
 #include <gmock/gmock.h>
@@ -13,13 +13,13 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr int framesBefore = 2;   // of prepareSubject()
-constexpr int framesOfBlock = 4;  // with one to warm up
+constexpr int framesBefore = 2;   // those of prepareSubject()
+constexpr int framesOfBlock = 4;  // including one to warm up
 constexpr int blockCount = 6;
 
 MeasureSettings smallSettings() {
   MeasureSettings settings;
-  settings.stop.relativeSpread = 0;  // never: it ends at maxBlocks
+  settings.stop.relativeSpread = 0;  // never reached: measuring ends at maxBlocks
   settings.stop.maxBlocks = blockCount;
   settings.stop.timeLimitSeconds = 600;
   settings.minFrames = settings.maxFrames = framesOfBlock - 1;
@@ -27,10 +27,10 @@ MeasureSettings smallSettings() {
   return settings;
 }
 
-/// The probe's times of a made-up device, with made-up seconds.
+/// The probe's times on a simulated device, in simulated seconds.
 struct MadeUpClock {
   double ms = 1;
-  int slowProbes = 0;  ///< the next so many take longer by half
+  int slowProbes = 0;  ///< this many of the next probes take half as long again
   double now = 0;
   ClockWatch watch{[this]() -> std::optional<double> {
                      now += 0.01;
@@ -42,7 +42,7 @@ struct MadeUpClock {
 
 constexpr int stages = -1;
 
-/// Draws nothing, and tells at whose end it is: of which block, or of a frame with stages.
+/// Draws nothing, and calls `tell` at the end of each block and of each frame with stages.
 class BlockTeller : public Method {
  public:
   explicit BlockTeller(std::function<void(int block)> tell) : tell_(std::move(tell)) {}
@@ -52,7 +52,7 @@ class BlockTeller : public Method {
       tell_(stages);
       return;
     }
-    // The last frame of the block: after it, the clock is probed.
+    // This is the last frame of the block; the clock is probed after it.
     const int measured = ++frames_ - framesBefore;
     if (measured > 0 && measured % framesOfBlock == 0) tell_(measured / framesOfBlock - 1);
   }
@@ -123,7 +123,7 @@ TEST_F(Measuring, BlocksInWhichTheClockFellAreRejectedAndTheCellEnds) {
 
 TEST_F(Measuring, RejectedBlocksDoNotMakeACellStopEarly) {
   MeasureSettings settings = smallSettings();
-  settings.stop.relativeSpread = 1e9;  // as soon as there are enough blocks
+  settings.stop.relativeSpread = 1e9;  // reached as soon as there are enough blocks
   settings.stop.minBlocks = 3;
   MadeUpClock clock;
   const Measurement m = measure(
@@ -172,7 +172,7 @@ TEST_F(Measuring, ACellOfWhichAllBlocksAreRejectedFailsWithTheReason) {
 
 class ClockProbes : public GpuTest {
  protected:
-  /// The shortest of a few: other programs only ever add.
+  /// The shortest of several times, because other programs can only make it longer.
   static double shortest(ClockProbe& probe) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 7; ++i) {
@@ -188,8 +188,8 @@ TEST_F(ClockProbes, TimeGrowsWithTheWork) {
   ClockProbe probe(sharedDevice(), 64, 128), longer(sharedDevice(), 64, 1024),
       wider(sharedDevice(), 512, 128);
   const double once = shortest(probe);
-  // Eight times the work. Half of that is asked for: a submission has its own cost, and the machine
-  // other work.
+  // Eight times the work. Only half of that is required, because a submission has its own cost and
+  // the machine has other work.
   EXPECT_GT(shortest(longer), 4 * once);
   if (sharedDevice().info().isCpu()) {  // 64 workgroups do not fill a GPU
     EXPECT_GT(shortest(wider), 4 * once);
@@ -202,7 +202,7 @@ TEST_F(ClockProbes, ASlowDeviceGetsLess) {
   probe.fit();
   EXPECT_GE(probe.groups(), 1u);
   if (!sharedDevice().info().isCpu()) return;
-  // 2 G fma take a CPU device longer than 8 ms, unless it has some 100 cores.
+  // 2 G fma take a CPU device longer than 8 ms, unless it has about 100 cores.
   EXPECT_LT(probe.groups(), groups);
 }
 

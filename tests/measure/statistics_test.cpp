@@ -43,7 +43,7 @@ TEST(QuantileDeathTest, RefusesNonsense) {
 }
 
 TEST(Summarize, ValuesWorkedOutByHand) {
-  // 1 ... 101, shuffled: the quantile q is 1 + 100 q.
+  // 1 ... 101, shuffled: the quantile for q is 1 + 100 q.
   std::vector<double> samples(101);
   std::iota(samples.begin(), samples.end(), 1.0);
   std::shuffle(samples.begin(), samples.end(), std::mt19937(1));
@@ -53,7 +53,7 @@ TEST(Summarize, ValuesWorkedOutByHand) {
   EXPECT_EQ(summary.q1, 26);
   EXPECT_EQ(summary.median, 51);
   EXPECT_EQ(summary.q3, 76);
-  EXPECT_EQ(summary.p95, 96);  // and not the median again
+  EXPECT_EQ(summary.p95, 96);  // not the median again
   EXPECT_EQ(summary.max, 101);
   EXPECT_EQ(summary.mean, 51);
   EXPECT_LT(summary.ciLow, 51);
@@ -101,8 +101,8 @@ TEST(Summarize, IsDeterministicFromTheSeed) {
 }
 
 TEST(Summarize, BlocksAreDrawnWhole) {
-  // Two blocks, however numbered: a draw is {A,A}, {A,B} or {B,B}, with medians 1, 1.5 and 2 since
-  // the blocks are constant. Draws of single frames would hardly ever leave 1.5.
+  // Two blocks, with any numbers: a draw is {A,A}, {A,B} or {B,B}, with the medians 1, 1.5 and 2,
+  // because each block is constant. Draws of single frames would nearly always have the median 1.5.
   std::vector<double> samples;
   std::vector<std::uint32_t> blocks;
   for (int i = 0; i < 50; ++i) {
@@ -116,9 +116,9 @@ TEST(Summarize, BlocksAreDrawnWhole) {
 }
 
 TEST(Summarize, IntervalsCoverTheTruth) {
-  // Frames of a block share most of their noise, as they do when a clock rate drifts. The interval
-  // shall hold the true median (10) about 95 times in 100 (somewhat less with 20 blocks); one that
-  // takes the frames as independent does so little more than half of the time.
+  // Frames of a block share most of their noise, as they do when a clock drifts. The interval
+  // should contain the true median (10) in about 95 of 100 cases, somewhat less with 20 blocks. An
+  // interval that treats frames as independent contains it little more than half of the time.
   std::mt19937_64 random(42);
   std::normal_distribution<double> normal;
   constexpr int kTrials = 200;

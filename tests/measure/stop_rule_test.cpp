@@ -34,9 +34,10 @@ TEST(StopRule, StopsAtASmallSpreadButNotEarly) {
 }
 
 TEST(StopRule, StopsWhenTheMedianStandsStill) {
-  // The running medians are 10, 9.5, 10, 9.5, ...: they never stand still.
+  // The running medians are 10, 9.5, 10, 9.5, ... and never settle.
   EXPECT_EQ(ruleOf(0, {10, 9, 11, 8, 12, 7, 13, 6}).stopReason(), "");
-  // 10, 10.5, 10, 10, 10, 10, 10, 10: still over six values, that is over five blocks, after eight.
+  // They are 10, 10.5, 10, 10, 10, 10, 10, 10: constant over six values, which are five blocks,
+  // after eight blocks.
   const std::vector<double> noise = {10, 11, 9, 10, 8, 10, 12, 10};
   StopRule::Limits limits{.minBlocks = 5};
   limits.relativeSpread = 0.01;

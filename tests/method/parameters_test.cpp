@@ -1,4 +1,4 @@
-// Parameters: one declaration, and everything given is checked against it.
+// Parameters: every given value is checked against the declaration.
 #include "method/parameters.h"
 
 #include <gmock/gmock.h>

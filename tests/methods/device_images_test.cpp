@@ -1,6 +1,6 @@
-// Images of one device against those that others made: tests/data/devices has a folder for each
-// (README.md there). Where no pixel is in doubt, the exact methods make the same picture
-// everywhere.
+// Compares this device's images with those of other devices, which are in the folders of
+// tests/data/devices (README.md there). The exact methods give the same image on every device,
+// except for pixels in doubt.
 #include <unistd.h>
 
 #include "support/truth.h"
@@ -12,10 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Small, so that the files are.
+// The images are small, so that the files are small.
 constexpr std::uint32_t width = 96, height = 54;
 
-/// Of a generated scene: as much as is peeled in a second or two, where each layer is a pass.
+/// The detail of a generated scene. Depth peeling has a pass per layer, and this much takes it a
+/// second or two.
 float detailOf(const std::string& scene) {
   static const std::map<std::string, float> own = {
       {"boxes", 0.1f},      {"planes", 1.0f},       {"smoke", 0.1f},       {"teapot", 0.5f},
@@ -24,7 +25,7 @@ float detailOf(const std::string& scene) {
   return found == own.end() ? 0.02f : found->second;
 }
 
-/// The steps of an 8-bit sRGB image: files have no finer ones.
+/// The value in steps of an 8-bit sRGB image, which are the steps of the files.
 constexpr double step = 1.0 / 255;
 constexpr double allowed = 2 * step;
 
@@ -32,7 +33,7 @@ int eightBits(float linear) {
   return int(std::lround(srgbEncode(std::clamp(linear, 0.0f, 1.0f)) * 255));
 }
 
-/// As a file holds it: what is read is sRGB-encoded already.
+/// A pixel as a file stores it. Images from files are sRGB-encoded already.
 int eightBitsOf(const Image& image, int x, int y, int channel) {
   const float value = image.at(x, y)[channel];
   return image.srgb ? int(std::lround(value * 255)) : eightBits(value);
@@ -51,8 +52,7 @@ std::vector<fs::path> recordedDevices() {
   return folders;
 }
 
-/// `nvidia-h200-580.159.04` for NVIDIA H200 with driver 580.159.04: what stands in brackets is left
-/// out.
+/// `nvidia-h200-580.159.04` for NVIDIA H200 with driver 580.159.04. Text in brackets is left out.
 std::string folderName(const DeviceInfo& device) {
   const auto shorter = [](const std::string& text) { return text.substr(0, text.find(" (")); };
   std::string name;
@@ -65,12 +65,12 @@ std::string folderName(const DeviceInfo& device) {
 }
 
 struct Agreement {
-  std::uint64_t sure = 0;     ///< pixels in no doubt that are not background
-  std::uint64_t differs = 0;  ///< of all in no doubt, by more than is allowed
-  int worst = 0;              ///< steps of a pixel in no doubt
+  std::uint64_t sure = 0;     ///< pixels without doubt that are not background
+  std::uint64_t differs = 0;  ///< pixels without doubt that differ by more than is allowed
+  int worst = 0;              ///< largest difference of a pixel without doubt, in steps
 };
 
-/// In 8-bit sRGB: how far apart two devices may be that snap vertices each in its way.
+/// How much two devices may differ that snap vertices differently, in steps of 8-bit sRGB.
 double snappingAt(const CpuImage& truth, std::size_t pixel) {
   const float by = truth.snapping[pixel];
   double most = 0.0;
@@ -101,7 +101,7 @@ Agreement compareWhereSure(const Image& image, const Image& other, const CpuImag
 
 class DeviceImages : public GpuTest {};
 
-/// A scene, what it looks like for certain, and what this device makes of it.
+/// A scene, its true image with doubts, and this device's images.
 struct Subject {
   explicit Subject(const std::string& name)
       : scene(loadScene({name, {}, detailOf(name)})),
@@ -112,7 +112,7 @@ struct Subject {
   RenderFixture fixture;
 };
 
-/// Exact methods that draw on the device.
+/// The exact methods that run on the device.
 std::vector<std::string> exactMethods() {
   std::vector<std::string> names;
   for (const auto& [name, info] : methods())
@@ -142,7 +142,7 @@ TEST_F(DeviceImages, AreThoseOfOtherDevicesWhereNothingIsInDoubt) {
       for (std::size_t i = 0; i < exact.size(); ++i) {
         const Agreement found = compareWhereSure(made[i], recorded, subject.truth);
         EXPECT_EQ(found.differs, 0u) << exact[i] << ": up to " << found.worst << "/255";
-        // Or nothing was compared.
+        // Otherwise nothing was compared.
         EXPECT_GT(double(found.sure), 0.3 * double(subject.truth.coveredPixels()));
         RecordProperty(fmt::format("{} {}", folder.filename().string(), info.name),
                        fmt::format("worst {}/255 from the CPU renderer", own.worst));
@@ -153,7 +153,7 @@ TEST_F(DeviceImages, AreThoseOfOtherDevicesWhereNothingIsInDoubt) {
   }
 }
 
-// A comparison that lets everything pass would pass above, too.
+// The comparison finds differences.
 TEST_F(DeviceImages, ThatDifferAreFound) {
   Subject subject("boxes");
   const Image image = subject.fixture.render("reference").image;
@@ -177,7 +177,7 @@ TEST(DeviceImagesFolder, IsNamedByDeviceAndDriver) {
   EXPECT_EQ(folderName(device), "llvmpipe-mesa-22.3.6");
 }
 
-// OITLAB_RECORD_IMAGES=DIR keeps the images of this device, in a folder of DIR.
+// With OITLAB_RECORD_IMAGES=DIR this stores the images of this device in a folder of DIR.
 TEST_F(DeviceImages, CanBeRecorded) {
   const DeviceInfo& device = sharedDevice().info();
   const fs::path temporary =

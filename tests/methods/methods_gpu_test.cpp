@@ -1,4 +1,4 @@
-// The methods on the device: exact where they claim it, from run to run and under shuffled input.
+// The methods on the device. Those that claim to be exact are, in every run and for shuffled input.
 #include "support/gpu.h"
 
 #include <gmock/gmock.h>
@@ -18,15 +18,15 @@ float centerChannel(const Image& image, int channel) {
   return image.at(image.width / 2, image.height / 2)[channel];
 }
 
-// Two layers by hand: over = a1 c1 + (1 - a1)(a2 c2 + (1 - a2) background).
+// Two layers, computed by hand: over = a1 c1 + (1 - a1)(a2 c2 + (1 - a2) background).
 TEST_F(Methods, TwoLayersBlendAsWorkedOutByHand) {
   const std::array<glm::vec3, 3> far = {glm::vec3{-9, -9, -1}, {9, -9, -1}, {0, 9, -1}};
   const std::array<glm::vec3, 3> near = {glm::vec3{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
   const glm::vec4 red{1, 0, 0, 0.5f}, green{0, 1, 0, 0.25f};
-  // The nearer one first: wrong for blending in submission order, no matter for the reference.
+  // The nearer layer comes first: wrong for blending in submission order, right for the reference.
   RenderFixture fixture(triangleScene({near, far}, {red, green}, frontCamera()), 17, 11);
   const auto exact = fixture.render("reference");
-  // shade(): the normal (0, 0, 1) against the light gives 0.2 + 0.8 * (0.5 + 0.5 * 0.4206).
+  // shade() gives 0.2 + 0.8 * (0.5 + 0.5 * 0.4206) for the normal (0, 0, 1).
   const float light = 0.2f + 0.8f * (0.5f + 0.5f * 0.4206f);
   const float redAlpha = 128 / 255.0f, greenAlpha = 64 / 255.0f;  // as stored in 8 bits
   const float transmitted = (1 - redAlpha) * (1 - greenAlpha) * backgroundColor.r;
@@ -66,8 +66,8 @@ TEST_F(Methods, ReferenceOrdersEqualDepthsByPrimitiveId) {
   }
 }
 
-// The same fragments, blended by the fixed-function unit in the exact order: parallel planes are
-// sorted right by their centroids.
+// Fixed-function blending of the same fragments in the exact order: for parallel planes the order
+// of their centroids is right.
 TEST_F(Methods, SortedBlendingOfParallelPlanesIsTheReference) {
   RenderFixture fixture(generated("planes"), 160, 90);
   const auto exact = fixture.render("reference");
@@ -87,8 +87,8 @@ TEST_F(Methods, ReferenceGrowsItsPoolAndLosesNothing) {
   EXPECT_EQ(tight.frame.counters, roomy.frame.counters);
 }
 
-// No limit on the fragments of a pixel: 3,000 layers over the left half, which take more than one
-// round of the sort, beside pixels of a single layer, which are done in the first.
+// The number of fragments per pixel has no limit: 3,000 layers over the left half, which need
+// several rounds of the sort, beside pixels of a single layer, which need only the first.
 TEST_F(Methods, ReferenceSortsThousandsOfLayers) {
   std::vector<std::array<glm::vec3, 3>> layers;
   std::vector<glm::vec4> colors;
@@ -107,12 +107,12 @@ TEST_F(Methods, ReferenceSortsThousandsOfLayers) {
   EXPECT_EQ(exact.frame.counters.at("max_fragments_per_pixel"), 3000u);
   EXPECT_EQ(exact.frame.counters.at("covered_pixels"), 64u);
   const auto sorted = fixture.render("blend", {{"order", "sorted"}});
-  // Back to front in float32 rounds 3,000 times in another order.
+  // Blending back to front in float32 rounds 3,000 times in another order.
   EXPECT_LT(compareImages(sorted.image, exact.image).maxError, 1e-3);
 }
 
-// A closed sheet of small triangles: each pixel is covered once, shared edges neither twice nor
-// not at all, at a grazing angle too.
+// A closed sheet of small triangles, also at a grazing angle: each pixel is covered exactly once,
+// also at shared edges.
 TEST_F(Methods, TessellatedSheetCoversEveryPixelOnce) {
   constexpr int cells = 37;
   std::vector<std::array<glm::vec3, 3>> triangles;
@@ -134,7 +134,7 @@ TEST_F(Methods, TessellatedSheetCoversEveryPixelOnce) {
   }
 }
 
-// Opaque geometry hides what is behind it and is seen through what is in front.
+// Opaque geometry hides layers behind it and is visible through layers in front of it.
 TEST_F(Methods, TransparentFragmentsAreTestedAgainstOpaqueDepth) {
   const auto layer = [](float z) {
     return std::array{glm::vec3{-9, -9, z}, glm::vec3{9, -9, z}, glm::vec3{0, 9, z}};
@@ -175,8 +175,9 @@ TEST_F(Methods, AnEmptyViewIsTheBackground) {
   }
 }
 
-// Drivers take long to compile: a method made ready a second time, for any scene, finds its
-// pipelines. One for another format of target, which its shaders name, has others.
+// Drivers compile slowly, so a method that is made a second time, for any scene, uses the pipelines
+// of the first. A method for another target format has other pipelines, because its shaders depend
+// on the format.
 TEST_F(Methods, PipelinesAreMadeOnce) {
   const auto& pipelines = sharedDevice().pipelines();
   RenderFixture fixture(randomSoup(1, 10), 8, 8), other(randomSoup(2, 10), 9, 7);
@@ -189,7 +190,7 @@ TEST_F(Methods, PipelinesAreMadeOnce) {
     other.make(name);
     EXPECT_EQ(pipelines.size(), made) << name;
   }
-  // lucid makes its programs when a frame needs them.
+  // lucid makes a program when a frame first needs it.
   const std::map<std::string, std::string> filter2 = {{"depth_filter", "2"},
                                                       {"ordered_first", "off"}};
   const std::map<std::string, std::string> filter4 = {{"depth_filter", "4"},

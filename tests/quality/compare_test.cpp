@@ -32,7 +32,7 @@ TEST(CompareImages, EqualImages) {
 }
 
 TEST(CompareImages, ValuesWorkedOutByHand) {
-  // 4 pixels, 12 channels; off by 0.5 and 0.25 in one pixel, by 0.25 in another.
+  // 4 pixels with 12 channels. They differ by 0.5 and 0.25 in one pixel and by 0.25 in another.
   Image image = makeFlat(2, 2, 0.5F);
   image.at(0, 0)[0] = 1.0F;
   image.at(0, 0)[2] = 0.25F;
@@ -53,7 +53,7 @@ TEST(CompareImages, AlphaDoesNotCount) {
 }
 
 TEST(CompareImages, BlackPixelsMayBeWrongToo) {
-  // A share of wrong pixels that counts non-black ones would miss these.
+  // A share that only counts pixels that are not black would miss these.
   const Comparison result = compareImages(makeFlat(2, 1, 0), makeFlat(2, 1, 0.5F));
   EXPECT_EQ(result.pixelsOff, 1);
 }
@@ -93,7 +93,7 @@ TEST(CompareImages, SsimAndFlipOfEqualImages) {
   EXPECT_EQ(linear.ssim, 1);
   EXPECT_EQ(linear.flip, 0);
   EXPECT_EQ(linear.flipHdr, 0);
-  // Equal images are not filtered: that must not say more than the filters would.
+  // Equal images are not filtered, but the result must be the one of the filters.
   const Comparison small = compareImages(makeFlat(12, 10, 0.3F), makeFlat(12, 10, 0.3F));
   EXPECT_EQ(small.ssim, std::nullopt);
   EXPECT_EQ(small.flip, 0);
@@ -108,7 +108,7 @@ TEST(CompareImages, SsimAndFlipOfDifferentImages) {
   EXPECT_NEAR(linear.ssim.value(), 1e-4 / (1 + 1e-4), 1e-9);
   EXPECT_NEAR(linear.flip.value(), 0.96738, 2e-5);
   EXPECT_TRUE(linear.flipHdr.has_value());
-  // Mixed: what is shown is compared, and that has no exposure.
+  // With one encoded and one linear image, what a display shows is compared, which has no exposure.
   const Comparison mixed = compareImages(makeFlat(12, 11, 0.5F, true), makeFlat(12, 11, 1));
   EXPECT_GT(mixed.flip.value(), 0.1);
   EXPECT_EQ(mixed.flipHdr, std::nullopt);
@@ -128,7 +128,7 @@ TEST(CompareImages, EncodedMeetsLinear) {
   const Image linear = makeFlat(1, 1, 0.21404114F, false);
   EXPECT_NEAR(compareImages(encoded, linear).maxError, 0, 1e-6);
   EXPECT_NEAR(compareImages(linear, encoded).maxError, 0, 1e-6);
-  // Two encoded ones are compared as they are.
+  // Two encoded images are compared as they are.
   EXPECT_NEAR(compareImages(encoded, makeFlat(1, 1, 0.25F, true)).maxError, 0.25, 1e-7);
 }
 
@@ -177,7 +177,7 @@ TEST(ErrorMap, EachMetricIsZeroWhereEqualAndInfinityWhereNotANumber) {
     EXPECT_NEAR(errors.row(2)[55], 0.0F, 1e-6F) << name;
     EXPECT_GE(*std::min_element(errors.values.begin(), errors.values.end()), 0.0F) << name;
   }
-  // Filters spread an error, a difference of pixels does not.
+  // Filters spread an error to neighbours; a difference of pixels does not.
   EXPECT_EQ(errorPlane(image, reference, MapMetric::absolute).row(20)[41], 0.0F);
   EXPECT_GT(errorPlane(image, reference, MapMetric::ssim).row(20)[41], 0.0F);
 }
@@ -199,13 +199,13 @@ TEST(ErrorMap, ValuesAsAnImageAreGrey) {
 
 TEST(ErrorMap, LegendRunsFromDarkToBright) {
   const Image map = errorMap(makeFlat(100, 4, 0), makeFlat(100, 4, 0), 0.1F);
-  // Unit 1: the bar begins after a margin of 2, a digit of 3 and a gap of 2, and ends as far before
-  // the three characters of 0.1 on the right.
+  // With unit 1 the bar starts after a margin of 2, a digit of 3 and a gap of 2. It ends at the
+  // same distance from the three characters of 0.1 on the right.
   const int y = 4 + 2;
   const int right = 100 - 2 - tinyTextWidth("0.1", 1) - 2 - 1;
   EXPECT_EQ(colourAt(map, 7, y), infernoColour(0));
   EXPECT_EQ(colourAt(map, right, y), infernoColour(1));
-  EXPECT_EQ(colourAt(map, 2, y), (std::array<float, 3>{1, 1, 1}));  // the corner of the 0
+  EXPECT_EQ(colourAt(map, 2, y), (std::array<float, 3>{1, 1, 1}));  // a corner of the digit 0
 }
 
 TEST(ErrorMap, SmallImagesGetRoomForTheLegend) {

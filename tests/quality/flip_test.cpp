@@ -27,7 +27,7 @@ Image makeNoise(int width, int height, std::uint64_t seed, float scale = 1, bool
 }
 
 TEST(FlipColour, KnownColours) {
-  // White is the white of both spaces; the CIELAB of the primaries is in many a table.
+  // White is the white of both spaces. The CIELAB values of the primaries are in published tables.
   const Colour3 white = toHuntLab({1, 1, 1});
   EXPECT_NEAR(white[0], 100, 1e-3);
   EXPECT_NEAR(white[1], 0, 1e-3);
@@ -54,7 +54,7 @@ TEST(FlipColour, DistancesAreRedistributedInTwoPieces) {
   const Colour3 green = toHuntLab({0, 1, 0}), blue = toHuntLab({0, 0, 1});
   EXPECT_FLOAT_EQ(flipColourDifference(green, blue), 1);
   EXPECT_FLOAT_EQ(flipColourDifference(green, green), 0);
-  // At the knee, 0.4 of the largest, it is 0.95; at half of the knee half of it.
+  // At the knee, 0.4 of the largest difference, it is 0.95, and at half of the knee half of that.
   const double largest = std::pow(hyAb(green, blue), 0.7);
   const auto at = [](double powered) {
     return flipColourDifference({float(std::pow(powered, 1 / 0.7)), 0, 0}, {0, 0, 0});
@@ -73,10 +73,10 @@ TEST(FlipFeature, AnEdgeAndAPointAreFoundAndFlatIsNothing) {
   const Features found = detectFeatures(step, kFlipPixelsPerDegree);
   EXPECT_NEAR(none.edges.row(20)[20], 0, 1e-6);
   EXPECT_NEAR(none.points.row(20)[20], 0, 1e-6);
-  // The half of the kernel that sees white adds up to 1, less nothing: the other half sees black.
+  // The half of the kernel over white adds up to 1, and the other half is over black.
   EXPECT_NEAR(found.edges.row(20)[20], 1, 1e-5);
   EXPECT_NEAR(found.edges.row(20)[3], 0, 1e-6);
-  // The same turned by 90 degrees.
+  // The same, rotated by 90 degrees.
   Plane<float> turned(41, 41);
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 41; ++x) turned.row(x)[y] = step.row(y)[x];
@@ -89,8 +89,9 @@ TEST(FlipFeature, AnEdgeAndAPointAreFoundAndFlatIsNothing) {
 TEST(Flip, FlatImagesAreTheirColourDifference) {
   EXPECT_EQ(computeFlip(makeFlat(30, 20, {0.3F, 0.9F, 0}), makeFlat(30, 20, {0.3F, 0.9F, 0})).mean,
             0);
-  // Black against white: lightness 100, to the 0.7 is 25.119; green against blue to the 0.7 is
-  // 41.274, the knee 16.510: 0.95 + 0.05 * (25.119 - 16.510) / (41.274 - 16.510).
+  // Black and white differ by a lightness of 100, and 100^0.7 = 25.119. For green and blue the
+  // power is 41.274, so the knee is 16.510 and the result 0.95 + 0.05 * (25.119 - 16.510) / (41.274
+  // - 16.510).
   EXPECT_NEAR(computeFlip(makeFlat(30, 20, {0, 0, 0}), makeFlat(30, 20, {1, 1, 1})).mean, 0.96738,
               2e-5);
   EXPECT_NEAR(computeFlip(makeFlat(9, 3, {0, 1, 0}), makeFlat(9, 3, {0, 0, 1})).mean, 1, 1e-5);
@@ -107,7 +108,7 @@ TEST(Flip, IsSymmetricAndWithinItsRange) {
 }
 
 TEST(Flip, FineDetailIsForgivenFromAfar) {
-  // A checkerboard of single pixels against its grey: the further away, the less there is to see.
+  // A checkerboard of single pixels and its mean grey: less visible from farther away.
   Image board = makeFlat(64, 64, {0, 0, 0}, false);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)

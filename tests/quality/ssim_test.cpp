@@ -25,8 +25,8 @@ TEST(Ssim, FlatImagesDifferInLuminanceAlone) {
 }
 
 TEST(Ssim, AFlippedPixelAgainstFlatGreyIsAsWorkedOutByHand) {
-  // One window, all of which is the centre pixel's weight w: means m and m + w d; variances 0 and
-  // w d^2 (1 - w); covariance 0.
+  // One window, in which only the centre pixel with weight w differs: means m and m + w d,
+  // variances 0 and w d^2 (1 - w), covariance 0.
   Image image = makeGrey(11, 11, 0.5F);
   for (int c = 0; c < 3; ++c) image.at(5, 5)[c] = 1.0F;
   double sum = 0;
@@ -58,7 +58,7 @@ TEST(Ssim, LinearImagesAreClampedAndEncodedFirst) {
       *computeSsim(makeGrey(11, 11, srgbEncode(0.25F)), makeGrey(11, 11, 1.0F)).mean;
   const double found =
       *computeSsim(makeGrey(11, 11, 0.25F, false), makeGrey(11, 11, 7.0F, false)).mean;
-  EXPECT_NEAR(found, wanted, 1e-6);  // srgbEncode(1) is a rounding below 1
+  EXPECT_NEAR(found, wanted, 1e-6);  // srgbEncode(1) is slightly below 1
 }
 
 TEST(Ssim, WithoutAWholeWindowThereIsNoMean) {

@@ -51,7 +51,7 @@ TEST_F(DepthComplexityGpu, ASheetIsOneEverywhereAndTwiceIsNoMore) {
   }
 }
 
-// Two layers, one behind an opaque one that covers the right half: the count is where it should be.
+// Two layers, one of them behind an opaque layer that covers the right half.
 TEST_F(DepthComplexityGpu, OpaqueGeometryHidesWhatIsBehindIt) {
   const auto layer = [](float left, float z) {
     return std::array{glm::vec3{left, -99, z}, glm::vec3{left, 99, z}, glm::vec3{200, 0, z}};
@@ -68,7 +68,7 @@ TEST_F(DepthComplexityGpu, OpaqueGeometryHidesWhatIsBehindIt) {
       EXPECT_EQ(depth.counts[y * 16 + x], x < 8 ? 2u : 1u) << x << ", " << y;
 }
 
-// What alpha cuts away is no fragment: nobody blends it.
+// Fragments that the alpha cutoff discards do not count, because no method blends them.
 TEST_F(DepthComplexityGpu, CutAwayFragmentsAreNotCounted) {
   const auto layer = [](float z) {
     return std::array{glm::vec3{-99, -99, z}, glm::vec3{99, -99, z}, glm::vec3{0, 99, z}};

@@ -28,7 +28,7 @@ Paint solid(Rgba color) {
 
 const Rgba kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 255};
 
-// One blending material per texture.
+// One BLEND material per texture.
 Scene sceneOf(std::vector<Texture> textures) {
   Scene scene;
   for (int i = 0; i < int(textures.size()); ++i)
@@ -37,7 +37,7 @@ Scene sceneOf(std::vector<Texture> textures) {
   return scene;
 }
 
-// A decoded level, with texels counted from a texture's corner: (-1, 0) is in its border.
+// A decoded level. Texels are counted from a texture's corner, so (-1, 0) is in its border.
 struct Decoded {
   Decoded(const Atlas& atlas, const AtlasPlacement& place, std::size_t index)
       : rgba(decodeAtlasLevel(atlas, index)),
@@ -111,7 +111,7 @@ TEST(Atlas, NeighboursNeverBleedAtAnyLevel) {
   for (std::size_t level = 0; level < atlases.opaque.levels.size(); ++level)
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       const Decoded decoded(atlases.opaque, atlases.ofMaterial[i], level);
-      // All that a bilinear footprint with its centre in the texture may touch.
+      // All texels that bilinear filtering inside the texture may read.
       const auto last = [&](int size) {
         return int(std::floor(float(size) / float(1 << level) - 0.5f)) + 1;
       };
@@ -130,7 +130,7 @@ TEST(Atlas, BordersRepeatTheTexture) {
     const Decoded decoded(atlases.opaque, atlases.ofMaterial[0], level);
     const int n = size >> level;
     for (int i = 0; i < n; ++i) {
-      // The same texels in a block of other neighbours: equal but for the compression.
+      // The same texels in a block with other neighbours: equal except for the compression.
       EXPECT_LT(difference(decoded.at(-1, i), decoded.at(n - 1, i)), 24);
       EXPECT_LT(difference(decoded.at(i, n), decoded.at(i, 0)), 24);
     }

@@ -83,7 +83,7 @@ TEST(Camera, DepthRangeIsThatOfTheCornersBeyondTheNearPlane) {
   const DepthRange within = depthRange(camera, bounds);
   EXPECT_FLOAT_EQ(within.nearest, 0.5f);
   EXPECT_FLOAT_EQ(within.farthest, 4);
-  camera.target = {0, 0, 20};  // looks away: still a range that can be divided by
+  camera.target = {0, 0, 20};  // looks away: the range still has a length
   camera.eye = {0, 0, 10};
   const DepthRange behind = depthRange(camera, bounds);
   EXPECT_FLOAT_EQ(behind.nearest, 0.5f);

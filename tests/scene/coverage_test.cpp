@@ -25,7 +25,7 @@ TEST(Coverage, CountsPixelCentres) {
   const Scene scene = builder.take();
   const Camera camera{.eye = {0, 0, 1}, .fovY = kTurn / 4.0f, .near = 0.1f};
   const Coverage coverage = measureCoverage(scene, camera, 40, 20);
-  // At distance 1 a pixel is 0.1 wide, at distance 2 0.2: both quads fill 10 x 10.
+  // A pixel is 0.1 wide at distance 1 and 0.2 at distance 2: both quads cover 10 x 10 pixels.
   EXPECT_EQ(coverage.samples, 200u);
   EXPECT_EQ(coverage.coveredPixels, 100u);
   EXPECT_EQ(coverage.peakDepth, 2u);
@@ -38,12 +38,12 @@ TEST(Coverage, CutsAtTheNearPlane) {
   const std::uint32_t material = builder.blendMaterial(0.5f);
   builder.quad({0, -1, 0}, {1000, 0, 0}, {0, 0, -1000}, glm::vec3(1), material);
   const Camera camera{.eye = {0, 0, 0.5f}, .target = {0, 0, -1}, .near = 0.01f};
-  // The lower half of the frame, but for a row at the horizon at most.
+  // The lower half of the frame, except for at most one row at the horizon.
   const double samples = double(measureCoverage(builder.take(), camera, 100, 100).samples);
   EXPECT_NEAR(samples, 5000.0, 100.0);
 }
 
-// The figures of docs/scenes.md that the paper's tables rest on; samples at 2560x1330.
+// The figures in docs/scenes.md that the paper's tables use; samples are at 2560x1330.
 TEST(Generated, DefaultViewsTakeThePapersSamples) {
   const std::map<std::string, double> samples = {
       {"boxes", 12.11}, {"bunny", 0.74},        {"conference", 5.31}, {"planes", 48.04},
@@ -64,7 +64,7 @@ TEST(CameraPath, GoesThroughItsKeyframes) {
   EXPECT_TRUE(near(path.at(1.0f / 3).eye, {1, 2, 1}, 1e-5f));
   EXPECT_TRUE(near(path.at(2.0f / 3).target, {2, 0, 0}, 1e-5f));
   EXPECT_TRUE(near(path.at(1).eye, {3, 1, 1}, 1e-5f));
-  // Evenly along where the keyframes are evenly apart, and no jump in speed at a keyframe.
+  // The speed is constant between equidistant keyframes and does not jump at a keyframe.
   EXPECT_NEAR(path.at(0.5f).eye.x, 1.5f, 1e-5f);
   const float h = 1e-3f, t = 1.0f / 3;
   const glm::vec3 before = (path.at(t).eye - path.at(t - h).eye) / h;

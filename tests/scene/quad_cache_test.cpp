@@ -28,7 +28,7 @@ class QuadCache : public TemporaryFolder {
  protected:
   std::filesystem::path file() const { return folder_ / filesInFolder().at(0); }
 
-  // Whatever is done to the file, the quads are right and the file is good again.
+  // After damage to the file the quads are right, and the file is replaced.
   template <typename Damage>
   void expectRebuiltAfter(const std::string& what, Damage&& damage) {
     const std::string good = readTextFile(file());

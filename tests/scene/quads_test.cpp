@@ -50,8 +50,8 @@ Scene soup(std::uint32_t count) {
   return scene;
 }
 
-// A triangle by what its corners are, from its least corner on, so that rotations are equal and
-// mirror images are not.
+// A triangle as its corners, starting with the smallest, so that rotated triangles are equal and
+// mirrored ones are not.
 using Corner = std::tuple<float, float, float, std::uint32_t>;
 std::array<Corner, 3> outline(const Scene& scene, glm::uvec3 triangle) {
   std::array<Corner, 3> corners;
@@ -59,7 +59,7 @@ std::array<Corner, 3> outline(const Scene& scene, glm::uvec3 triangle) {
     const Vertex& v = scene.vertices[triangle[i]];
     corners[std::size_t(i)] = {v.position.x, v.position.y, v.position.z, v.material};
   }
-  auto least = corners;  // of the three rotations, since a corner may occur twice
+  auto least = corners;  // the least of the three rotations, because a corner may occur twice
   for (int i = 0; i < 2; ++i) {
     std::ranges::rotate(corners, corners.begin() + 1);
     least = std::min(least, corners);
@@ -67,7 +67,7 @@ std::array<Corner, 3> outline(const Scene& scene, glm::uvec3 triangle) {
   return least;
 }
 
-// Every triangle is half of exactly one quad, and that half is the triangle, winding and all.
+// Every triangle is half of exactly one quad, with its winding.
 void expectEveryTriangleOnce(const Scene& scene, const QuadMesh& mesh) {
   ASSERT_EQ(mesh.quads.size(), mesh.triangles.size());
   std::vector<int> seen(scene.triangles.size());
@@ -94,7 +94,7 @@ void expectEveryTriangleOnce(const Scene& scene, const QuadMesh& mesh) {
   EXPECT_EQ(mesh.degenerate, degenerate);
 }
 
-// Two neighbours that are both left over would have made a quad.
+// Two neighbours without partners would have made a quad.
 void expectMaximal(const Scene& scene, const QuadMesh& mesh) {
   std::set<std::pair<Corner, Corner>> left;
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
@@ -131,7 +131,7 @@ TEST(Quads, EveryTriangleOfAGridFindsAPartner) {
 }
 
 TEST(Quads, AStripOfEvenLengthIsPairedFromItsEnds) {
-  // Taking any other than a candidate of least degree first may leave single triangles behind.
+  // If a candidate of higher degree is taken first, single triangles may remain.
   Scene scene;
   scene.materials.resize(1);
   for (std::uint32_t i = 0; i < 202; ++i)
@@ -160,7 +160,7 @@ TEST(Quads, FansArePairedAroundTheirHub) {
   }
 }
 
-// 200,000 triangles about one edge: all pairs would be 10^10.
+// 200,000 triangles around one edge, which have 10^10 pairs.
 TEST(Quads, AnEdgeOfManyTrianglesTakesNoLongerThanOthers) {
   Scene scene;
   scene.materials.resize(1);
@@ -184,7 +184,7 @@ TEST(Quads, WhatSharesNoEdgeStaysSingle) {
 
 TEST(Quads, OnlyIdenticalVerticesAreShared) {
   Scene scene = gridScene(1, 1);
-  // The second triangle with vertices of its own: the same bytes, then another colour.
+  // The second triangle has its own vertices: first with the same bytes, then with another colour.
   for (int i = 0; i < 3; ++i) {
     scene.vertices.push_back(scene.vertices[scene.triangles[1][i]]);
     scene.triangles[1][i] = std::uint32_t(scene.vertices.size() - 1);
@@ -216,7 +216,7 @@ TEST(Quads, DegenerateTrianglesAndBackToBackOnesAreKept) {
   EXPECT_LE(mesh.degenerate, 4u);
 }
 
-// Meshes with holes, doubled and turned triangles: whatever comes, each triangle is there once.
+// Meshes with holes, duplicated and flipped triangles: each triangle is in exactly one quad.
 TEST(Quads, RandomMeshesKeepEveryTriangle) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Pcg32 random(seed);
@@ -234,9 +234,9 @@ TEST(Quads, RandomMeshesKeepEveryTriangle) {
   }
 }
 
-// The teapot of this project has eight patches that end in a point. A grid's triangles are of two
-// kinds and only pair with the other one, and at the point 16 of one kind are missing: 128
-// leftovers are the least there can be.
+// This project's teapot has eight patches that end in a point. The triangles of a grid are of two
+// kinds and each pairs only with the other kind. At the point 16 of one kind are missing, so at
+// least 128 triangles have no partner.
 TEST(Quads, GeneratedScenesAreNearlyAllQuads) {
   for (const auto& [name, most] : {std::pair("boxes", 0u), {"planes", 0u}, {"teapot", 128u}}) {
     const Scene scene = loadScene({name, {}, 1.0f});
@@ -246,8 +246,8 @@ TEST(Quads, GeneratedScenesAreNearlyAllQuads) {
   }
 }
 
-// What `oitlab list scenes` says without making the scenes. The two largest take seconds:
-// `oitlab scene powerplant --json` and `sanmiguel` show theirs.
+// The numbers that `oitlab list scenes` prints without making the scenes. The two largest scenes
+// take seconds and are not tested; `oitlab scene powerplant --json` and `sanmiguel` print theirs.
 TEST(Quads, ListedCountsAreTrue) {
   for (const SceneInfo& info : sceneCatalogue()) {
     const SceneSize size = generatedSize(info.name);
@@ -259,7 +259,7 @@ TEST(Quads, ListedCountsAreTrue) {
   }
 }
 
-// Published for LucidRaster: 1.5 % of Sponza's 132K quads and 0.9 % of the dragon's 438K.
+// Published for LucidRaster: 1.5% of Sponza's 132K quads and 0.9% of the dragon's 438K.
 TEST(Quads, RealScenesAreAsPublished) {
   OITLAB_NEEDS_SHARED_SCENES();
   for (const auto& [file, percent] : {std::pair("sponza.glb", 1.5), {"stanford_dragon.glb", 0.9}}) {

@@ -99,10 +99,10 @@ TEST(OverrideOpacity, KeepsWhatMasksCutOut) {
   EXPECT_TRUE(scene.materials[0].ignoreTextureAlpha);
   EXPECT_FLOAT_EQ(scene.materials[1].alphaCutoff, 0.1f);  // half the opacity before, half after
   EXPECT_EQ(scene.materials[2].alphaCutoff, 0.0f);
-  EXPECT_GT(scene.materials[3].alphaCutoff, 1.0f);  // never seen before, nor after
+  EXPECT_GT(scene.materials[3].alphaCutoff, 1.0f);  // invisible before and after
 }
 
-// Views in TOML files, with a data root of the test's own.
+// Views in TOML files, with the test's own data root.
 class NamedViews : public TemporaryFolder {
  protected:
   void SetUp() override {
@@ -115,7 +115,7 @@ class NamedViews : public TemporaryFolder {
     path_ = glb.write(folder_ / "x.glb");
   }
   void TearDown() override {
-    // A bundle's launcher says there where the bundle is, and the tests after this one need it.
+    // A bundle's launcher sets this variable, and the tests after this one need it.
     if (before_)
       ::setenv("OITLAB_ROOT", before_->c_str(), 1);
     else
@@ -125,7 +125,7 @@ class NamedViews : public TemporaryFolder {
   void toml(const char* name, const char* text) { std::ofstream(folder_ / name) << text; }
 
   std::string path_;
-  std::optional<std::string> before_;  ///< of OITLAB_ROOT
+  std::optional<std::string> before_;  ///< the value of OITLAB_ROOT
 };
 
 TEST_F(NamedViews, NoFileIsNoError) {

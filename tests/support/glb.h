@@ -11,7 +11,7 @@
 
 namespace oitlab {
 
-/// Writes small GLB files, well or ill formed: `json` is open to any change before write().
+/// Writes small GLB files, valid or not: `json` may be changed in any way before write().
 class GlbBuilder {
  public:
   enum Type { byte = 5120, ubyte = 5121, ushort = 5123, uint = 5125, real = 5126 };
@@ -44,7 +44,7 @@ class GlbBuilder {
 
   int positions(const std::vector<float>& xyz) { return accessor(xyz, real, "VEC3"); }
 
-  /// A mesh of one primitive; `extra` has indices, material, mode; returns the mesh.
+  /// Adds a mesh of one primitive and returns it. `extra` has indices, material and mode.
   int mesh(const nlohmann::json& attributes,
            const nlohmann::json& extra = nlohmann::json::object()) {
     nlohmann::json primitive = extra;
@@ -53,7 +53,7 @@ class GlbBuilder {
     return int(json["meshes"].size()) - 1;
   }
 
-  /// A node; in the scene unless it is somebody's child.
+  /// Adds a node. It is in the scene unless it is a child of another node.
   int node(const nlohmann::json& node, bool inScene = true) {
     json["nodes"].push_back(node);
     const int index = int(json["nodes"].size()) - 1;

@@ -14,7 +14,7 @@ void GpuTest::SetUp() {
   try {
     messagesBefore_ = sharedDevice().validationMessages().size();
   } catch (const DeviceError& error) {
-    // A machine without Vulkan must not look as if it had passed: CI has a device, and fails here.
+    // CI has a device, so a missing one must fail there and not look like a pass.
     if (std::getenv("CI") != nullptr) FAIL() << error.what();
     GTEST_SKIP() << error.what();
   }
@@ -96,7 +96,7 @@ Scene randomSoup(std::uint64_t seed, int count) {
   std::vector<std::array<glm::vec3, 3>> triangles;
   std::vector<glm::vec4> colors;
   for (int i = 0; i < count; ++i) {
-    // Every fourth triangle repeats an earlier one, so that equal depths are sure to occur.
+    // Every fourth triangle repeats an earlier one, so that equal depths occur.
     if (i % 4 == 3)
       triangles.push_back(triangles[random.next() % triangles.size()]);
     else

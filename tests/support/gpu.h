@@ -7,11 +7,11 @@
 
 namespace oitlab::testing {
 
-/// One device for all tests of a process, under validation with synchronization validation.
+/// The device of all tests of a process, with validation and synchronization validation.
 const Device& sharedDevice();
 
-/// Every test that touches the device derives from this: it fails on any word of the validation
-/// layers, and is skipped with the reason where there is no device.
+/// The base of all tests that use the device. A test fails on any message of the validation layer.
+/// It is skipped, with the reason, on a machine without a device.
 class GpuTest : public ::testing::Test {
  protected:
   void SetUp() override;
@@ -32,15 +32,15 @@ class RenderFixture {
     Image image;
     std::string hash;
     FrameResult frame;
-    std::map<std::string, std::uint64_t> memory;  ///< bytes by buffer, "method: ..." and others
+    std::map<std::string, std::uint64_t> memory;  ///< bytes by buffer: "method: ..." and others
   };
 
-  /// One instrumented frame with a fresh `method`, by default from the scene's default view.
+  /// One instrumented frame with a new `method`, by default from the scene's default view.
   Result render(const std::string& method,
                 const std::map<std::string, std::string>& parameters = {},
                 std::optional<Camera> camera = {});
 
-  /// For several frames with one method: it keeps what the earlier ones made it grow.
+  /// A method for several frames: it keeps the buffers that earlier frames enlarged.
   std::unique_ptr<Method> make(const std::string& method,
                                const std::map<std::string, std::string>& parameters = {});
   Result render(Method& method, const Camera& camera, bool instrumented = true);
@@ -56,14 +56,14 @@ class RenderFixture {
   Renderer renderer_;
 };
 
-/// A scene of separate triangles, one material, all with the default view `camera`.
+/// A scene of separate triangles of one material, with the default view `camera`.
 Scene triangleScene(const std::vector<std::array<glm::vec3, 3>>& triangles,
                     const std::vector<glm::vec4>& colors, const Camera& camera);
 
-/// A camera at the origin of the xy plane that looks down -Z onto z = 0 such that y spans [-1, 1].
+/// A camera on the z axis that looks along -Z. In the plane z = 0 it sees y from -1 to 1.
 Camera frontCamera();
 
-/// Seeded random triangles around the origin, some of them coplanar duplicates at equal depth.
+/// Random triangles around the origin from a seed. Some are duplicates, with equal depths.
 Scene randomSoup(std::uint64_t seed, int triangles);
 
 }  // namespace oitlab::testing

@@ -8,12 +8,13 @@
 
 namespace oitlab {
 
-/// The folder of real scenes beside the source tree, or beside a bundle; not everybody has it.
+/// The folder of real scenes beside the source tree or beside a bundle. Not every machine has it.
 inline std::filesystem::path sharedScenes() {
   return dataRoot() / ".." / "shared" / "scenes";
 }
 
-/// The manifest: a folder with a few of the scenes is not the library.
+/// Whether the library is there. Checks the manifest, because a folder with a few scenes is not the
+/// library.
 #define OITLAB_NEEDS_SHARED_SCENES()                                        \
   if (!std::filesystem::exists(::oitlab::sharedScenes() / "manifest.json")) \
   GTEST_SKIP() << "no library of scenes in " << ::oitlab::sharedScenes().lexically_normal().string()

@@ -10,7 +10,7 @@
 
 namespace oitlab {
 
-/// A folder of its own for each test, gone afterwards; tests may run side by side.
+/// Gives each test its own folder, which is removed after it. Tests may run in parallel.
 class TemporaryFolder : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -33,7 +33,7 @@ class TemporaryFolder : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// What `call` throws as an Error, or "" when it throws none.
+/// The message of the Error that `call` throws, or "" when it throws none.
 template <typename Error, typename Call>
 std::string messageOf(Call&& call) {
   try {

@@ -36,8 +36,8 @@ void expectTruth(const Candidate& candidate, const Scene& scene, const Camera& c
   const auto exact = fixture.render(candidate.method, candidate.parameters, camera);
   const Verdict verdict = judge(exact.image, truth, allowed, candidate.hardware);
   const double pixels = double(width) * height;
-  // Every layer brings its own edges near a sample, so the shares are of pixels where there are
-  // few layers, and of fragments where (hair, pipes) there are many.
+  // Every layer has edges near samples. Therefore the shares are of pixels in scenes of few layers,
+  // and of fragments in scenes of many layers (hair, pipes).
   const double chances = std::max(pixels, double(truth.fragmentCount()));
   ::testing::Test::RecordProperty(
       scene.name,
@@ -46,10 +46,10 @@ void expectTruth(const Candidate& candidate, const Scene& scene, const Camera& c
                   truth.pixelsInDoubt(doubt::cutoff)));
   EXPECT_EQ(verdict.wrong, 0u) << "worst: " << verdict.worst * 255 << "/255";
   EXPECT_LT(double(verdict.edges), 0.001 * chances);
-  // The oak's leaves are cards with a back of the same vertices in another order: it is open
-  // which of the two a device has in front.
+  // The oak's leaves are cards whose back has the same vertices in another order. Which of the two
+  // is in front depends on the device.
   EXPECT_LT(double(verdict.orders), 0.01 * pixels);
-  // Doubts are the exception, or nothing was tested.
+  // Most pixels must be without doubt, or nothing was tested.
   EXPECT_LT(double(truth.pixelsInDoubt(0xff)), 0.1 * chances);
   EXPECT_NEAR(double(exact.frame.counters.at("fragments")), double(truth.fragmentCount()),
               double(truth.pixelsInDoubt(doubt::edge | doubt::cutoff)));

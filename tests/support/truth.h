@@ -5,41 +5,41 @@
 
 namespace oitlab::testing {
 
-/// How an image compares with the CPU renderer's.
+/// The comparison of an image with that of the CPU renderer.
 struct Verdict {
-  std::uint64_t wrong = 0;   ///< pixels in no doubt that differ by more than the tolerance
-  std::uint64_t edges = 0;   ///< pixels that do, in doubt about edges or a cutoff
-  std::uint64_t orders = 0;  ///< pixels that do, in doubt about the order too
-  double worst = 0.0;        ///< difference of a pixel in no doubt
+  std::uint64_t wrong = 0;   ///< pixels without doubt that differ by more than the tolerance
+  std::uint64_t edges = 0;   ///< differing pixels in doubt about edges or a cutoff
+  std::uint64_t orders = 0;  ///< differing pixels in doubt about the order too
+  double worst = 0.0;        ///< largest difference of a pixel without doubt
 };
 
-/// `hardware`: allows for what devices make of the colours by snapping vertices, too.
+/// `hardware` also allows for the change of colours when a device snaps vertices.
 Verdict judge(const Image& image, const CpuImage& truth, double tolerance, bool hardware = false);
 
-/// Of a pixel in no doubt. Measured on llvmpipe: 0.001/255 where there is no texture.
+/// The tolerance of a pixel without doubt. Measured on llvmpipe without textures: 0.001/255.
 inline constexpr double tolerance = 2.0 / 255;
 
-/// Where textures are sampled, the filter is the device's: llvmpipe truncates the colours between
-/// the end points of BC blocks, a step of 8-bit sRGB (2.2/255 linear near white; measured:
-/// 2.2/255), and GPUs weigh texels in steps of 1/256. Vulkan allows both. The level of detail is
-/// ours (shade.glsl).
+/// The tolerance with textures, because the filter is the device's. llvmpipe truncates the colours
+/// between the end points of BC blocks: a step of 8-bit sRGB, which is 2.2/255 linear near white
+/// (measured: 2.2/255). GPUs weight texels in steps of 1/256. Vulkan allows both. The level of
+/// detail is computed by shade.glsl.
 inline constexpr double textureTolerance = 4.0 / 255;
 
-/// A method, and what it is to be run with.
+/// A method and its parameters.
 struct Candidate {
   std::string method;
   std::map<std::string, std::string> parameters = {};
-  bool hardware = false;  ///< its fragments are made by the device's rasterizer
+  bool hardware = false;  ///< the device's rasterizer makes its fragments
 };
 
-/// Expects the method's image to be the CPU renderer's, where that is in no doubt.
+/// Expects the method's image to equal the CPU renderer's, except for pixels in doubt.
 void expectTruth(const Candidate& candidate, const Scene& scene, const Camera& camera, int width,
                  int height, double allowed);
 
-/// From the default view, with the tolerance that the scene's textures ask for.
+/// The same from the default view, with a tolerance that depends on the scene's textures.
 void expectTruth(const Candidate& candidate, const Scene& scene, int width, int height);
 
-/// Inside of things, where triangles cross the near plane and reach behind the eye.
+/// A view inside objects, where triangles cross the near plane and reach behind the eye.
 void expectTruthFromInside(const Candidate& candidate);
 
 }  // namespace oitlab::testing

@@ -63,7 +63,7 @@ TEST_F(CacheFile, PutsUpWithWhateverIsInItsPlace) {
   EXPECT_FALSE(writeCached(folder_ / "plain" / "file", "key", "content"));
   EXPECT_EQ(readCached(folder_ / "plain" / "file", "key"), std::nullopt);
 
-  const auto fifo = folder_ / "fifo";  // reading it would wait for ever
+  const auto fifo = folder_ / "fifo";  // reading it would wait forever
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   EXPECT_EQ(readCached(fifo, "key"), std::nullopt);
   const auto loop = folder_ / "loop";

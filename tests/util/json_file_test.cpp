@@ -58,7 +58,7 @@ TEST_F(JsonFile, FailedWritesLeaveNothing) {
 
 TEST_F(JsonFile, NamesThePlaceOfAnError) {
   const std::filesystem::path path = folder_ / "a.json";
-  // The bad letter is the 7th byte of the file and the 5th column of line 2.
+  // The invalid letter is the 7th byte of the file, in column 5 of line 2.
   const std::string message = failureOf(path, "{\n\"a\":x}");
   EXPECT_THAT(message, HasSubstr(path.string() + ":2:5: not valid JSON at byte 7: "));
   EXPECT_THAT(message, HasSubstr("invalid literal"));

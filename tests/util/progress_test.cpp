@@ -46,7 +46,7 @@ std::string contentOf(std::FILE* file) {
   return std::string(text, std::fread(text, 1, sizeof text, file));
 }
 
-/// What a Progress of two cells prints.
+/// The text that a Progress of two cells prints.
 std::string printed(bool enabled, bool verbose) {
   const File file(std::tmpfile(), std::fclose);
   Progress progress(2, enabled, verbose, file.get());

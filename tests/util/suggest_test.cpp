@@ -8,10 +8,11 @@ namespace {
 const std::vector<std::string> kMethods = {"reference", "wboit", "mboit", "lucidraster", "ll"};
 
 TEST(DidYouMean, FindsASlipOfTheHand) {
-  EXPECT_EQ(didYouMean("wbiot", kMethods), " (did you mean 'wboit'?)");             // swap
-  EXPECT_EQ(didYouMean("lucidrster", kMethods), " (did you mean 'lucidraster'?)");  // letter lost
-  EXPECT_EQ(didYouMean("wwboit", kMethods), " (did you mean 'wboit'?)");         // letter doubled
-  EXPECT_EQ(didYouMean("referemce", kMethods), " (did you mean 'reference'?)");  // wrong key
+  EXPECT_EQ(didYouMean("wbiot", kMethods), " (did you mean 'wboit'?)");  // swap
+  EXPECT_EQ(didYouMean("lucidrster", kMethods),
+            " (did you mean 'lucidraster'?)");                                   // missing letter
+  EXPECT_EQ(didYouMean("wwboit", kMethods), " (did you mean 'wboit'?)");         // doubled letter
+  EXPECT_EQ(didYouMean("referemce", kMethods), " (did you mean 'reference'?)");  // wrong letter
 }
 
 TEST(DidYouMean, IgnoresCase) {
@@ -26,7 +27,7 @@ TEST(DidYouMean, AllowsAThirdOfTheLettersAndNoMore) {
 }
 
 TEST(DidYouMean, CountsASwapAsOneSlip) {
-  // Five letters allow one slip; a swap taken as two substitutions would be two.
+  // Five letters allow one edit. A swap must count as one edit, not as two substitutions.
   EXPECT_EQ(didYouMean("baxes", {"abxes"}), " (did you mean 'abxes'?)");
 }
 

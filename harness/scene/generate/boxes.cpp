@@ -11,7 +11,7 @@ namespace {
 constexpr int kBoxesPerAxis = 10;
 constexpr float kSide = 0.5f;
 constexpr float kSpacing = 0.6f;
-constexpr float kJitter = 0.1f;  // so that neighbours touch and no two faces line up
+constexpr float kJitter = 0.1f;  // neighbours touch, and no two faces are coplanar
 constexpr float kOpacity = 0.5f;
 constexpr std::uint64_t kSeed = 1;
 

@@ -14,7 +14,7 @@ void addRoom(MeshBuilder& builder, std::uint32_t material) {
   const Paint wall{{0.78f, 0.72f, 0.62f}, material}, carpet{{0.3f, 0.28f, 0.36f}, material};
   const Paint wood{{0.5f, 0.32f, 0.18f}, material}, white{{0.9f, 0.9f, 0.88f}, material};
   const float x = 0.5f * kLength, z = 0.5f * kWidth;
-  // Single walls that face inwards: what back-face culling leaves of a room seen from inside.
+  // Walls are single and face inwards: back-face culling keeps them in a view from inside.
   panel(builder, {-x, 0, z}, {kLength, 0, 0}, {0, 0, -kWidth}, 1, 1, carpet);
   panel(builder, {-x, kHeight, -z}, {kLength, 0, 0}, {0, 0, kWidth}, 1, 1, white);
   panel(builder, {-x, 0, -z}, {kLength, 0, 0}, {0, kHeight, 0}, 1, 1, wall);
@@ -38,14 +38,14 @@ void conferenceStructure(MeshBuilder& builder, float fineness) {
   addRoom(builder, material);
   const Paint cushion{{0.62f, 0.16f, 0.12f}, material}, metal{{0.35f, 0.36f, 0.4f}, material};
   const Paint wood{{0.55f, 0.35f, 0.2f}, material}, slat{{0.85f, 0.84f, 0.78f}, material};
-  // Long thin triangles: blinds before the windows of one side.
+  // Long thin triangles: blinds in front of the windows of one side.
   const int slats = scaledCount(60, std::sqrt(fineness), 6);
   for (int window = 0; window < 5; ++window)
     for (int i = 0; i < slats; ++i)
       box(builder, {},
           {-5.4f + 2.7f * float(window), 1.0f + 1.8f * (float(i) + 0.5f) / float(slats), -3.93f},
           {1.1f, 0.35f * 1.8f / float(slats), 0.01f}, slat);
-  // The tables: big flat tops.
+  // Tables with large flat tops.
   for (const float x : {-2.4f, 2.4f}) {
     box(builder, {}, {x, 0.74f, 0}, {2.3f, 0.03f, 0.75f}, wood);
     for (const float leg : {-1.9f, 1.9f})

@@ -1,4 +1,4 @@
-// Closed meshes of fine triangles, a pixel and less each: stand-ins for the scanned models.
+// Closed meshes of small triangles, each a pixel or less: substitutes for the scanned models.
 #include <cmath>
 
 #include "scene/generate/generators.h"
@@ -9,13 +9,13 @@ namespace {
 
 constexpr float kOpacity = 0.5f;
 
-// A bump of height `height` on the unit ball around `direction`, `width` radians wide.
+// A bump on the unit sphere around `direction`, of this height and `width` radians wide.
 float bump(glm::vec3 p, glm::vec3 direction, float height, float width) {
   const float away = std::acos(glm::clamp(glm::dot(p, glm::normalize(direction)), -1.0f, 1.0f));
   return height * std::exp(-away * away / (width * width));
 }
 
-// Waves over a surface, as fur or clay have them.
+// Small waves, as on fur or clay.
 float ripple(glm::vec3 p, float frequency) {
   return std::sin(frequency * p.x + 1.3f * std::sin(frequency * p.y)) *
          std::sin(frequency * p.y + 1.1f * std::sin(frequency * p.z)) *
@@ -63,7 +63,7 @@ float girth(float t) {
   return std::max(body * (1.0f - 0.55f * glm::smoothstep(0.65f, 0.9f, t)), 0.015f) + head;
 }
 
-// A tube with scales; closed at both ends by rings that shrink to nearly nothing, and a fan.
+// A tube with scales. Each end is closed by shrinking rings and a fan.
 template <typename Line, typename Girth>
 void scaly(MeshBuilder& builder, int around, int along, float scales, const Paint& paint,
            Line&& line, Girth&& thickness) {

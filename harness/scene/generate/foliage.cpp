@@ -8,7 +8,7 @@ namespace {
 
 void addCard(MeshBuilder& builder, glm::vec3 center, glm::vec3 right, glm::vec3 up, bool pentagon,
              glm::vec3 normal, const Paint& paint) {
-  // Two of the pentagon's corners share what was one: less of the empty corner of the texture.
+  // Two corners of the pentagon replace one corner of the square, where the texture is empty.
   constexpr std::array<glm::vec2, 5> kPentagon{
       {{-0.7f, -1.0f}, {0.7f, -1.0f}, {1.0f, 0.2f}, {0.0f, 1.0f}, {-1.0f, 0.2f}}};
   constexpr std::array<glm::vec2, 4> kQuad{
@@ -47,7 +47,7 @@ void addCards(MeshBuilder& builder, const CardCloud& cloud, const Paint& paint) 
         cloud.center + cloud.radii * out * std::cbrt(inner + (1.0f - inner) * random.uniform());
     const Frame frame = frameAround(randomDirection(random));
     const float size = cloud.halfSize * random.uniform(0.67f, 1.33f);
-    // Lit as the outside of the crown, not each card on its own: otherwise foliage looks like
+    // Normals are those of the crown's surface, not of each card: otherwise foliage looks like
     // gravel.
     const glm::vec3 facing = glm::cross(frame.right, frame.up);
     const glm::vec3 normal = glm::normalize(out + 0.4f * facing);

@@ -5,15 +5,16 @@
 namespace oitlab {
 namespace {
 
-// A texture to paint on: linear floats until the end. Colour is spread under transparent texels
-// too, since filtering would fetch it.
+// A texture to paint on, in floats until the end. Transparent texels have a colour too, because
+// filtering reads it.
 class Canvas {
  public:
   Canvas(int size, glm::vec3 ground) : size_(size), texels_(std::size_t(size * size)) {
     for (glm::vec4& texel : texels_) texel = glm::vec4(ground, 0.0f);
   }
 
-  /// cover(p) in [0, 1], for texels within `reach` of `center`; positions in [0, 1].
+  /// Paints with the opacity cover(p) in [0, 1] all texels within `reach` of `center`; positions
+  /// are in [0, 1].
   template <typename Cover>
   void paint(glm::vec2 center, float reach, glm::vec3 color, Cover&& cover) {
     const auto texel = [&](float x) { return std::clamp(int(x * float(size_)), 0, size_ - 1); };
@@ -36,11 +37,11 @@ class Canvas {
 
  private:
   int size_;
-  std::vector<glm::vec4> texels_;  // colour sRGB-encoded, as it is stored
+  std::vector<glm::vec4> texels_;  // colour sRGB-encoded, as in the texture
 };
 
-// How far p is within a lens from `a` to `b`, in units of `soft`: its width is `width` of its
-// length.
+// How far p is inside a lens from `a` to `b`, in units of `soft`. The lens is `width` times its
+// length wide.
 float inLens(glm::vec2 p, glm::vec2 a, glm::vec2 b, float width, float soft) {
   const glm::vec2 along = b - a;
   const float length = glm::length(along);
@@ -62,7 +63,7 @@ Texture leafClusterTexture(int size, int leaves, float leafLength, glm::vec3 col
   Pcg32 random(seed);
   const float soft = 1.5f / float(size);
   for (int i = 0; i < leaves; ++i) {
-    // Thicker towards the middle, and clear of the border: a cut leaf would show as a straight
+    // Denser towards the centre, and away from the border: a cut leaf would show as a straight
     // edge.
     const float room = std::max(0.5f - 0.6f * leafLength, 0.0f);
     const glm::vec2 center =
@@ -104,7 +105,7 @@ Texture needleTexture(int size, glm::vec3 color, std::uint64_t seed) {
 Texture puffTexture(int size, float opacity, std::uint64_t seed) {
   Canvas canvas(size, glm::vec3(0.85f));
   Pcg32 random(seed);
-  // Many faint blobs make the unevenness of smoke.
+  // Many faint blobs make the smoke uneven.
   for (int i = 0; i < 60; ++i) {
     const glm::vec2 center =
         glm::vec2(0.5f) + 0.28f * random.uniform() * direction(kTurn * random.uniform());

@@ -9,7 +9,7 @@ void addChair(MeshBuilder& builder, const Placement& place, float fineness, cons
   const float s = std::sqrt(fineness);
   const auto cushionAt = [&](glm::vec3 center, glm::vec3 half, float lean) {
     ball(builder, scaledCount(12, s, 1), cushion, [&](glm::vec3 d) {
-      // A superellipsoid: between a box and an egg.
+      // A superellipsoid: a shape between a box and an ellipsoid.
       const glm::vec3 p =
           d / std::pow(std::pow(std::abs(d.x), 4.0f) + std::pow(std::abs(d.y), 4.0f) +
                            std::pow(std::abs(d.z), 4.0f),

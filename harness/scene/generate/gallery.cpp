@@ -10,7 +10,7 @@ namespace {
 constexpr float kOpacity = 0.5f;
 constexpr float kLength = 30.0f, kWidth = 9.0f, kHeight = 7.0f;
 
-// A statue that nobody made: a ball pulled upwards and dented by waves.
+// An abstract statue: a ball that is stretched upwards and dented by waves.
 void addStatue(MeshBuilder& builder, glm::vec3 foot, int n, std::uint64_t seed,
                const Paint& paint) {
   Pcg32 random(seed);
@@ -67,8 +67,8 @@ void galleryStructure(MeshBuilder& builder, float fineness) {
     for (const float side : {1.0f, -1.0f})
       addColumn(builder, {side * (x - 0.45f), 0, -z + kLength * (float(i) + 0.5f) / columns}, 5.4f,
                 0.2f, fineness * 1.7f, marble);
-  // Pictures: flat canvases in frames of ornament, each ornament an odd fan (a single triangle is
-  // left when they are paired).
+  // Pictures: flat canvases in ornamental frames. Each ornament is a fan of an odd number of
+  // triangles, so that pairing leaves one of them over.
   const int ornaments = scaledCount(1150, fineness, 1);
   for (int i = 0; i < 24; ++i) {
     const float side = i % 2 ? 1.0f : -1.0f;

@@ -28,9 +28,10 @@ std::vector<SceneInfo> sceneCatalogue() {
   return catalogue;
 }
 
-/// What pairTriangles() makes of each at full detail: constants of deterministic scenes, so that
-/// listing them need not make 12.7 million triangles. A test holds them to the truth; after a
-/// change of a scene, `oitlab scene NAME --json` gives the new ones.
+/// The result of pairTriangles() for each scene at full detail. The scenes are deterministic, so
+/// these are constants, and `oitlab list scenes` need not make 12.7 million triangles. A test
+/// compares them with the scenes. After a change of a scene, `oitlab scene NAME --json` prints the
+/// new numbers.
 struct PairedQuads {
   const char* name;
   std::uint64_t quads, degenerate;
@@ -73,7 +74,7 @@ void buildToCount(MeshBuilder& builder, double triangles,
     structure(trial, float(std::exp(logFineness)));
     return std::pair(trial.triangleCount(), trial.vertexCount());
   };
-  // Between steps of a coarse structure the nearer one is taken.
+  // A coarse structure has few possible counts: take the nearer one.
   double low = std::log(1e-3), high = std::log(1e3);
   for (int i = 0; i < 24; ++i) {
     const double middle = 0.5 * (low + high);

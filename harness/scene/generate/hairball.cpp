@@ -9,7 +9,7 @@ namespace {
 constexpr float kOpacity = 0.5f;
 constexpr std::uint64_t kSeed = 17;
 
-// One strand winds about the centre on a circle whose plane turns and whose radius breathes.
+// A strand winds around the centre on a circle whose plane rotates and whose radius varies.
 void addStrand(MeshBuilder& builder, Pcg32 random, int segments, int sides, float radius,
                std::uint32_t material) {
   const glm::vec3 axis = randomDirection(random);
@@ -40,7 +40,7 @@ void hairStructure(MeshBuilder& builder, float fineness) {
     const auto n = std::uint64_t(strands) * sides;
     return builder.count(n * std::uint64_t(segments + 1), 2 * n * std::uint64_t(segments));
   }
-  // Fewer strands are thicker, so that they cover as much.
+  // If there are fewer strands they are thicker, so that they cover the same area.
   const float radius = 0.00105f * 3000.0f / float(strands);
   for (int i = 0; i < strands; ++i)
     addStrand(builder, Pcg32(kSeed, std::uint64_t(i)), segments, sides, radius, material);

@@ -7,11 +7,11 @@
 
 namespace oitlab {
 
-/// Puts together the scenes that code makes. Triangles are counter-clockwise from outside.
+/// Builds generated scenes. Triangles are counter-clockwise when seen from outside.
 ///
-/// A counting builder takes the same calls and keeps only how many vertices and triangles there
-/// were: so a generator can be asked for its size without the work, and fit itself to a budget.
-/// What a generator asks for must therefore not depend on what it made before.
+/// A counting builder takes the same calls and only counts vertices and triangles. Thus the size of
+/// a scene is known without making it, and a generator can fit itself to a triangle count. For
+/// this, the calls of a generator must not depend on the vertices that it made before.
 class MeshBuilder {
  public:
   enum class Mode { build, count };
@@ -25,13 +25,13 @@ class MeshBuilder {
   std::uint64_t triangleCount() const { return counting_ ? triangles_ : scene_.triangles.size(); }
   std::uint64_t vertexCount() const { return counting_ ? vertices_ : scene_.vertices.size(); }
 
-  /// To be added at once by what need not work out its vertices one by one when counting.
+  /// Adds to the counts at once, for shapes that know their numbers without making their vertices.
   void count(std::uint64_t vertices, std::uint64_t triangles) {
     vertices_ += vertices;
     triangles_ += triangles;
   }
 
-  /// Room for what is about to come: growing step by step would take twice the memory.
+  /// Reserves memory for what comes next: growing step by step would take twice the memory.
   void reserve(std::uint64_t vertices, std::uint64_t triangles) {
     if (counting_) return;
     scene_.vertices.reserve(vertices);
@@ -43,13 +43,13 @@ class MeshBuilder {
     return std::uint32_t(scene_.materials.size() - 1);
   }
 
-  /// A material that blends, in the colours of its vertices.
+  /// A BLEND material with the colours of its vertices.
   std::uint32_t blendMaterial(float opacity) {
     return material(
         {.name = "blend", .baseColor = {1, 1, 1, opacity}, .alphaMode = AlphaMode::blend});
   }
 
-  /// A material that blends and whose opacity is the alpha of the texture that `paint()` returns.
+  /// A BLEND material whose opacity is the alpha of the texture that `paint()` returns.
   template <typename Paint>
   std::uint32_t texturedMaterial(Paint&& paint) {
     const int index = int(scene_.textures.size());
@@ -58,7 +58,7 @@ class MeshBuilder {
         {.name = scene_.textures.back().name, .texture = index, .alphaMode = AlphaMode::blend});
   }
 
-  /// `normal` of unit length, `color` linear.
+  /// `normal` has unit length, `color` is linear.
   std::uint32_t vertex(glm::vec3 position, glm::vec3 normal, glm::vec2 uv, glm::vec3 color,
                        std::uint32_t material) {
     if (counting_) return std::uint32_t(vertices_++);
@@ -74,8 +74,8 @@ class MeshBuilder {
       scene_.triangles.emplace_back(a, b, c);
   }
 
-  /// A flat quad of four vertices and two triangles: `center` and the half edges `right` and `up`;
-  /// it faces cross(right, up).
+  /// A flat quad of four vertices and two triangles with the half edges `right` and `up`. It faces
+  /// cross(right, up).
   void quad(glm::vec3 center, glm::vec3 right, glm::vec3 up, glm::vec3 color,
             std::uint32_t material) {
     if (counting_) return count(4, 2);

@@ -9,9 +9,10 @@ namespace {
 
 constexpr int kPlanes = 32;
 constexpr float kGap = 0.1f;
-constexpr float kAspect = 16.0f / 9.0f;  // as wide as the frames they are to fill
+constexpr float kAspect = 16.0f / 9.0f;  // that of the frames that they fill
 constexpr float kFirst = 0.49f;          // half the height of the nearest
-constexpr float kGrowth = 0.0735f;  // farther ones stick out, so that every count of layers is seen
+constexpr float kGrowth =
+    0.0735f;  // farther planes are larger, so that each number of layers is visible
 constexpr float kOpacity = 0.25f;
 
 // A saturated colour for a hue in [0, 1), linear.
@@ -28,7 +29,7 @@ void buildPlanes(MeshBuilder& builder, float detail) {
     builder.quad({0.0f, 0.0f, -kGap * float(i)}, {kAspect * half, 0, 0}, {0, half, 0},
                  hueColor(float(i) / float(n)), material);
   }
-  // Not quite head-on: the depth within each plane varies a little, as in any real view.
+  // Not exactly head-on: the depth varies a little within each plane, as in any real view.
   builder.view("default", orbitCamera({0.0f, 0.0f, -0.5f * kGap * float(n - 1)}, 5.0f, 0.05f, 0.03f,
                                       0.8726646f));
 }

@@ -19,7 +19,7 @@ struct Shop {
   Paint paint(float r, float g, float b) const { return {{r, g, b}, material}; }
 };
 
-// A pipe that runs along the axes with round bends, and flanges where it turns.
+// A pipe along the axes, with round bends and flanges at the bends.
 void addRun(const Shop& shop, Pcg32 random, int sides, int steps) {
   constexpr int kLegs = 5;
   if (shop.builder.counting()) {
@@ -62,7 +62,7 @@ void addRun(const Shop& shop, Pcg32 random, int sides, int steps) {
   tube(shop.builder, path, sides, std::vector<float>(path.size(), radius), false, paint);
 }
 
-// A vessel within a vessel within a vessel.
+// Three vessels, one inside the other.
 void addVessel(const Shop& shop, glm::vec3 foot, float radius, float height) {
   const float s = std::sqrt(shop.fineness);
   for (const float shell : {1.0f, 0.85f, 0.5f})
@@ -92,7 +92,7 @@ void addFrame(const Shop& shop) {
       box(shop.builder, {}, {0, y, z(j)}, {0.5f * kLength, 0.15f, 0.1f}, steel);
     for (int i = 0; i <= kX; ++i)
       box(shop.builder, {}, {x(i), y, 0}, {0.1f, 0.15f, 0.5f * kWidth}, steel);
-    // Floors have openings: only some fields are decked.
+    // Floors have openings: only some fields have a grating.
     Pcg32 random(std::uint64_t(70 + k));
     for (int i = 0; i < kX; ++i)
       for (int j = 0; j < kZ; ++j)
@@ -112,7 +112,7 @@ void plantStructure(MeshBuilder& builder, float fineness) {
   const float s = std::sqrt(fineness);
   panel(builder, {-70, 0, 70}, {140, 0, 0}, {0, 0, -140}, 1, 1, shop.paint(0.4f, 0.4f, 0.38f));
   addFrame(shop);
-  // The boilers: walls of upright pipes, one box of them within the other.
+  // The boilers: boxes with walls of upright pipes, one inside the other.
   for (const float x : {-16.0f, 14.0f})
     for (int shell = 0; shell < 3; ++shell) {
       const float half = 7.0f - 1.8f * float(shell);

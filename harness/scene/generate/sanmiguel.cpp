@@ -8,7 +8,7 @@ namespace oitlab {
 namespace {
 
 constexpr float kOpacity = 0.5f;
-constexpr float kHalf = 11.0f;  // of the court's side
+constexpr float kHalf = 11.0f;  // half the side of the court
 constexpr float kAisle = 4.0f;
 constexpr float kStorey = 4.2f;
 
@@ -47,7 +47,7 @@ void addTree(MeshBuilder& builder, glm::vec3 foot, float tall, float fineness, s
   }
 }
 
-// One side of the court, along +x at z = kHalf before it is turned.
+// One side of the court: along +x at z = kHalf, before it is rotated.
 void addSide(MeshBuilder& builder, float turn, float fineness, const Paints& paints) {
   const Placement place{glm::vec3(0.0f), turn};
   const float s = std::sqrt(fineness);
@@ -113,7 +113,7 @@ void courtStructure(MeshBuilder& builder, float fineness) {
   for (int i = 0; i < 4; ++i) addSide(builder, 0.25f * kTurn * float(i), fineness, paints);
   panel(builder, {-kHalf - kAisle, -0.05f, kHalf + kAisle}, {2 * (kHalf + kAisle), 0, 0},
         {0, 0, -2 * (kHalf + kAisle)}, 1, 1, paints.wall);
-  // Paving stones, each domed a little.
+  // Paving stones, each slightly domed.
   const int stones = scaledCount(44, std::sqrt(s), 6), cells = scaledCount(10, std::sqrt(s), 1);
   for (int i = 0; i < stones; ++i)
     for (int j = 0; j < stones; ++j) {

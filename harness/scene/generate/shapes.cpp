@@ -25,7 +25,8 @@ void tube(MeshBuilder& builder, const std::vector<glm::vec3>& path, int sides,
   for (int j = 0; j < n; ++j) {
     const glm::vec3 along =
         path[std::size_t(std::min(j + 1, n - 1))] - path[std::size_t(std::max(j - 1, 0))];
-    // The frame is carried along, turned as little as possible, so that the tube does not twist.
+    // The frame is rotated as little as possible from ring to ring, so that the tube does not
+    // twist.
     const glm::vec3 right =
         frame.right - along * glm::dot(frame.right, along) / glm::dot(along, along);
     if (glm::length(right) > 1e-3f) {

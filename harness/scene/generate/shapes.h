@@ -8,18 +8,18 @@
 
 namespace oitlab {
 
-// The shapes that generated scenes are put together from. Each counts itself at once under a
-// counting builder. Colours are linear.
+// The shapes that generated scenes consist of. With a counting builder each adds its numbers at
+// once. Colours are linear.
 
 constexpr float kTurn = 2.0f * std::numbers::pi_v<float>;  ///< a full turn, radians
 
-/// What a shape is made of.
+/// The material and colour of a shape.
 struct Paint {
   glm::vec3 color{0.8f};
   std::uint32_t material = 0;
 };
 
-/// A position moved to where a shape stands: turned about +Y, then shifted.
+/// Where a shape stands: it is rotated about +Y, then moved.
 struct Placement {
   glm::vec3 origin{0.0f};
   float turn = 0.0f;  ///< radians
@@ -29,16 +29,16 @@ struct Placement {
   }
 };
 
-/// Unit vectors at right angles to `direction` (which need not be of unit length) and each other:
-/// cross(first, second) points along it.
+/// Two unit vectors that are perpendicular to each other and to `direction`, whose length may be
+/// any. cross(first, second) points along it.
 struct Frame {
   glm::vec3 right, up;
 };
 Frame frameAround(glm::vec3 direction);
 
-/// The sheet position(u, v), u and v in [0, 1], in nu x nv cells of two triangles each, facing
-/// cross(along u, along v), smooth. With `wrap` the last column of u is the first again. Vertices
-/// that fall together at a pole give triangles without area: keep v away from poles.
+/// The smooth sheet position(u, v) for u and v in [0, 1], in nu x nv cells of two triangles. It
+/// faces cross(along u, along v). With `wrap` the last column of u is the first one again. Keep v
+/// away from poles: vertices that coincide there give triangles without area.
 template <typename Position>
 void sheet(MeshBuilder& builder, int nu, int nv, bool wrap, const Paint& paint,
            Position&& position) {
@@ -75,7 +75,8 @@ void sheet(MeshBuilder& builder, int nu, int nv, bool wrap, const Paint& paint,
     }
 }
 
-/// A fan over a ring of `sides` vertices that `rim(k)` gives, counter-clockwise about `normal`.
+/// A fan over the ring of vertices rim(k) for k from 0 to `sides` - 1, counter-clockwise about
+/// `normal`.
 template <typename Rim>
 void fan(MeshBuilder& builder, int sides, glm::vec3 normal, const Paint& paint, Rim&& rim) {
   if (builder.counting()) return builder.count(std::uint64_t(sides), std::uint64_t(sides - 2));
@@ -86,8 +87,9 @@ void fan(MeshBuilder& builder, int sides, glm::vec3 normal, const Paint& paint, 
     builder.triangle(first, first + std::uint32_t(k), first + std::uint32_t(k + 1));
 }
 
-/// A tube along `path` (at least two points, no two neighbours the same) with radius(t) for t from
-/// 0 to 1 along it, in `sides` >= 3 strips; its ends are closed when `closed`.
+/// A tube of `sides` >= 3 strips along `path`, which has at least two points and no equal
+/// neighbours. radius(t) is its radius for t from 0 to 1 along the path. With `closed` its ends are
+/// closed.
 void tube(MeshBuilder& builder, const std::vector<glm::vec3>& path, int sides,
           const std::vector<float>& radii, bool closed, const Paint& paint);
 
@@ -95,8 +97,8 @@ void tube(MeshBuilder& builder, const std::vector<glm::vec3>& path, int sides,
 void pipe(MeshBuilder& builder, glm::vec3 from, glm::vec3 to, float radius, int sides, int segments,
           bool closed, const Paint& paint);
 
-/// A solid of revolution about +Y through `place`: profile(v) is (radius, height), upwards for a
-/// surface that faces outwards.
+/// A surface of revolution about +Y through `place`. profile(v) is (radius, height); if it goes
+/// upwards, the surface faces outwards.
 template <typename Profile>
 void lathe(MeshBuilder& builder, const Placement& place, int sides, int rings, const Paint& paint,
            Profile&& profile) {
@@ -106,14 +108,15 @@ void lathe(MeshBuilder& builder, const Placement& place, int sides, int rings, c
   });
 }
 
-/// A closed ball of 12 * n * n triangles: the cube's sides blown up, moved to position(direction).
+/// A closed ball of 12 * n * n triangles: a subdivided cube whose vertices are at
+/// position(direction).
 template <typename Position>
 void ball(MeshBuilder& builder, int n, const Paint& paint, Position&& position) {
   for (int axis = 0; axis < 3; ++axis)
     for (const float side : {1.0f, -1.0f})
       sheet(builder, n, n, false, paint, [&](float u, float v) {
-        // Tangents even out the cells. Whole steps, since neighbours must get the same edge from
-        // either end.
+        // The tangent makes the cells about equally large. The argument is computed from integers,
+        // so that both neighbours get the same edge.
         const auto bend = [n](float x) {
           const int step = 2 * int(std::lround(x * float(n))) - n;
           if (step == n || step == -n) return step > 0 ? 1.0f : -1.0f;
@@ -128,11 +131,11 @@ void ball(MeshBuilder& builder, int n, const Paint& paint, Position&& position) 
       });
 }
 
-/// An axis-parallel box of half size `half` before it is placed: 12 triangles, or 12 n^2.
+/// A box of half size `half`, parallel to the axes before it is placed, of 12 n^2 triangles.
 void box(MeshBuilder& builder, const Placement& place, glm::vec3 center, glm::vec3 half,
          const Paint& paint, int n = 1);
 
-/// A flat rectangle from `corner` along `u` and `v`, in nu x nv cells; faces cross(u, v).
+/// A flat rectangle from `corner` along `u` and `v`, in nu x nv cells. It faces cross(u, v).
 void panel(MeshBuilder& builder, glm::vec3 corner, glm::vec3 u, glm::vec3 v, int nu, int nv,
            const Paint& paint);
 

@@ -7,7 +7,7 @@ namespace oitlab {
 namespace {
 
 constexpr float kOpacity = 0.5f;
-constexpr float kLength = 26.0f;  // of the court, along x
+constexpr float kLength = 26.0f;  // length of the court, along x
 constexpr float kCourt = 5.2f;    // half the width of the court
 constexpr float kAisle = 4.0f;    // width of the galleries around it
 constexpr float kStorey = 5.0f;
@@ -17,7 +17,7 @@ struct Paints {
   Paint stone, floor, roof, cloth[3], green;
 };
 
-// One storey of the gallery on one side: columns, arches, walls with thickness, doors, vaults.
+// One storey of the gallery on one side: columns, arches, thick walls, doors and vaults.
 void addGallery(MeshBuilder& builder, float side, float y, float fineness, const Paints& paints) {
   const float front = side * kCourt, back = side * (kCourt + kAisle);
   const float bay = kLength / float(kBays);
@@ -31,7 +31,7 @@ void addGallery(MeshBuilder& builder, float side, float y, float fineness, const
     if (i == kBays) break;
     addArch(builder, {x, y + spring, front}, {x + bay, y + spring, front}, 0.2f, fineness,
             paints.stone);
-    // The spandrel above the arch, two leaves with a gap as of a thick wall.
+    // The spandrel above the arch: two surfaces, as far apart as the wall is thick.
     for (const float leaf : {-0.25f, 0.25f})
       sheet(builder, scaledCount(16, s, 2), scaledCount(4, s, 1), false, paints.stone,
             [&](float u, float v) {
@@ -53,7 +53,7 @@ void addGallery(MeshBuilder& builder, float side, float y, float fineness, const
               return glm::vec3(x + 0.3f + (bay - 0.6f) * u, y + 3.4f - 3.2f * v,
                                front + side * 0.6f + fold);
             });
-    // A door's frame in the back wall, and the room behind it.
+    // A door frame in the back wall, and the room behind it.
     box(builder, {}, {x + 0.5f * bay, y + 1.3f, back - side * 0.12f}, {0.6f, 1.3f, 0.08f},
         paints.roof);
     box(builder, {}, {x + 0.5f * bay, y + 1.9f, back + side * 2.2f}, {0.46f * bay, 1.8f, 1.9f},
@@ -82,7 +82,7 @@ void sponzaStructure(MeshBuilder& builder, float fineness) {
   box(builder, {}, {0, -0.1f, 0}, {half + 3.0f, 0.1f, wide + 1.0f}, paints.floor);
   for (const float side : {1.0f, -1.0f}) {
     for (const float y : {0.0f, kStorey}) addGallery(builder, side, y, fineness, paints);
-    // End walls, double, with rows of niches.
+    // Double end walls with rows of niches.
     for (const float leaf : {0.0f, 0.6f, 2.6f})
       box(builder, {}, {side * (half + 0.2f + leaf), kStorey, 0}, {0.12f, kStorey, wide},
           paints.stone);

@@ -1,7 +1,8 @@
-// The Utah teapot (Martin Newell, "The Utilization of Procedure Models in Digital Image Synthesis",
-// PhD thesis, University of Utah, 1975; squeezed by Jim Blinn; bottom by later hands): 32 bicubic
-// Bezier patches. Rim, body, lid and bottom are surfaces of revolution, so their patches are kept
-// as profile curves; handle and spout mirror at y = 0, so half of each is kept. Data are z-up.
+// The Utah teapot: 32 bicubic Bezier patches (Martin Newell, "The Utilization of Procedure Models
+// in Digital Image Synthesis", PhD thesis, University of Utah, 1975; the height was reduced by Jim
+// Blinn and the bottom was added later). Rim, body, lid and bottom are surfaces of revolution, so
+// only their profile curves are stored. Handle and spout are symmetric about y = 0, so only half of
+// each is stored. The data are z-up.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,18 +16,17 @@ namespace {
 
 using Patch = std::array<std::array<glm::dvec3, 4>, 4>;  // [v][u], u x v points outwards
 
-constexpr int kSegments =
-    16;  // per patch edge at full detail, as in the 16K triangles of the papers
+constexpr int kSegments = 16;  // per patch edge at full detail: the 16K triangles of the papers
 constexpr float kOpacity = 0.5f;
 
-// A quarter turn of a profile. The inner control points of the arc lie at `bulge` times the radius
-// on the tangent: 0.56 in Newell's data, but 0.5625 at the bulge of the knob.
+// A quarter of a surface of revolution. The inner control points of the arc are on the tangent, at
+// `bulge` times the radius: 0.56 in Newell's data, but 0.5625 at the knob.
 struct Profile {
   std::array<glm::dvec2, 4> radiusHeight;
   double bulge = 0.56;
 };
 
-// Each from the top or the outside inwards, so that all have their outside on the same side.
+// Each goes from the top or the outside inwards, so that the outside is the same side for all.
 constexpr Profile kProfiles[] = {
     {{{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}}},  // rim
     {{{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}}},            // body
@@ -36,7 +36,7 @@ constexpr Profile kProfiles[] = {
     {{{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}}},        // bottom
 };
 
-// The halves with y <= 0; rows run along the handle or spout, columns around it.
+// The halves with y <= 0. Rows go along the handle or spout, columns around it.
 constexpr Patch kHalves[] = {
     // handle, from its upper end
     {{{{{-1.6, 0, 2.025}, {-1.6, -0.3, 2.025}, {-1.5, -0.3, 2.25}, {-1.5, 0, 2.25}}},
@@ -58,7 +58,7 @@ constexpr Patch kHalves[] = {
       {{{2.8, 0, 2.4}, {2.8, -0.15, 2.4}, {3.2, -0.15, 2.4}, {3.2, 0, 2.4}}}}},
 };
 
-// Turns by k quarters about z; exact, so that neighbours share their edge bit for bit.
+// Rotates by k quarter turns about z. It is exact, so that neighbours share their edge bit for bit.
 glm::dvec3 turn(glm::dvec3 p, int k) {
   for (; k > 0; --k) p = {-p.y, p.x, p.z};
   return p;
@@ -68,7 +68,7 @@ Patch revolve(const Profile& profile, int quarter) {
   Patch patch;
   for (int row = 0; row < 4; ++row) {
     const double radius = profile.radiusHeight[row].x, height = profile.radiusHeight[row].y;
-    // Only the bulge of the knob is out of step: where it meets the lid it is 0.56 again.
+    // Only the knob has another bulge; where it meets the lid the bulge is 0.56 again.
     const double tangent = radius * (row == 3 ? 0.56 : profile.bulge);
     const glm::dvec3 arc[4] = {{radius, 0, height},
                                {radius, -tangent, height},
@@ -79,7 +79,7 @@ Patch revolve(const Profile& profile, int quarter) {
   return patch;
 }
 
-// The other half: y negated, columns in reverse, which keeps the outside outside.
+// The other half: y is negated, and the columns are reversed, so that the outside stays outside.
 Patch mirror(const Patch& half) {
   Patch patch;
   for (int row = 0; row < 4; ++row)
@@ -106,8 +106,8 @@ struct Weights {
   double slope[4];
 };
 
-// Cubic Bernstein polynomials at i / n. Symmetric in i and n - i bit for bit, so that an edge comes
-// out the same from both sides, whichever way it is run through.
+// Cubic Bernstein polynomials at i / n. They are symmetric in i and n - i bit for bit, so that both
+// neighbours compute the same edge, whichever direction they follow it.
 Weights bernstein(double i, double n) {
   const double t = i / n, s = (n - i) / n;
   return {{s * s * s, 3 * (s * s) * t, 3 * (t * t) * s, t * t * t},
@@ -127,8 +127,8 @@ glm::dvec3 normalAt(const Patch& patch, double i, double j, double n) {
   const glm::dvec3 alongU = evaluate(patch, u.slope, v.value);
   const glm::dvec3 alongV = evaluate(patch, u.value, v.slope);
   const glm::dvec3 normal = glm::cross(alongU, alongV);
-  // At the tip of the knob and the middle of the bottom a row of control points is one point and
-  // the tangent along u vanishes: the normal of a point close by will do.
+  // At the tip of the knob and the centre of the bottom a row of control points is a single point,
+  // and the tangent along u is zero. The normal of a nearby point is used there.
   if (glm::length(normal) < 1e-9) return normalAt(patch, i, j + (j < 0.5 * n ? 1e-3 : -1e-3), n);
   return glm::normalize(normal);
 }
@@ -149,7 +149,7 @@ void tessellate(MeshBuilder& builder, const Patch& patch, int n, std::uint32_t m
                                     material));
     }
   const auto triangle = [&](int a, int b, int c) {
-    // A row that is one point (see normalAt) makes a fan: its zero-area halves are left out.
+    // A row that is a single point (see normalAt) makes a fan; triangles without area are left out.
     if (positions[a] != positions[b] && positions[b] != positions[c] &&
         positions[c] != positions[a])
       builder.triangle(grid[a], grid[b], grid[c]);

@@ -1,4 +1,4 @@
-// Scenes of alpha-textured cards: few and big (scrub pine), many that cut each other (white oak),
+// Scenes of alpha-textured cards: a few large ones (scrub pine), many that intersect (white oak),
 // and a cloud of smoke.
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace oitlab {
 namespace {
 
-// With fewer cards, bigger ones: the number of samples stays.
+// If there are fewer cards they are larger, so that the number of samples is the same.
 float sizeAt(float halfSize, float fineness) {
   return halfSize / std::sqrt(std::min(fineness, 1.0f));
 }
@@ -20,7 +20,7 @@ void pineStructure(MeshBuilder& builder, float fineness) {
     return needleTexture(256, {0.3f, 0.48f, 0.28f}, 7);
   });
   const std::uint32_t bark = builder.blendMaterial(0.5f);
-  // A shrub: several crowns one over the other.
+  // A shrub: several crowns on top of each other.
   constexpr int kCrowns = 4;
   addTrunk(builder,
            {.height = 2.2f,
@@ -67,7 +67,7 @@ void oakStructure(MeshBuilder& builder, float fineness) {
             .segments = scaledCount(17, s, 1),
             .seed = 9},
            {kBark, bark});
-  // Boughs: the crown is a ball of balls, with gaps to look through.
+  // Boughs: the crown consists of balls with gaps between them.
   constexpr int kBoughs = 22;
   Pcg32 random(21);
   for (int i = 0; i < kBoughs; ++i) {
@@ -94,7 +94,7 @@ void buildOak(MeshBuilder& builder, float detail) {
 void buildSmoke(MeshBuilder& builder, float detail) {
   const std::uint32_t puff = builder.texturedMaterial([] { return puffTexture(128, 0.5f, 3); });
   const int cards = scaledCount(6734, detail, 8);
-  // A plume of puffs that widens as it rises and leans with the wind.
+  // A plume of puffs that becomes wider as it rises and leans in the wind.
   constexpr int kPuffs = 12;
   for (int i = 0; i < kPuffs; ++i) {
     const float up = (float(i) + 0.5f) / float(kPuffs);

@@ -26,8 +26,8 @@ std::vector<unsigned char> readBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-// tinygltf's images are left encoded: only those that a base colour uses are worth decoding. Those
-// in a buffer view are found again through it, since here its range has not been checked yet.
+// Leaves images encoded, because only those that a base colour uses are decoded later. An image in
+// a buffer view is read through the view later, because its range is not checked yet.
 bool keepEncoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                  const unsigned char* bytes, int size, void*) {
   if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
@@ -54,7 +54,7 @@ void parse(const std::filesystem::path& path, GltfFile& file) {
             ? reader.LoadBinaryFromMemory(&file.model, &error, &ignored, bytes.data(), size, folder)
             : reader.LoadASCIIFromString(&file.model, &error, &ignored,
                                          reinterpret_cast<const char*>(bytes.data()), size, folder);
-  } catch (const std::exception& exception) {  // what tinygltf's own checks let through
+  } catch (const std::exception& exception) {  // faults that tinygltf's own checks miss
     error = exception.what();
   }
   if (!good) fail<InputError>("{}: {}", file.path, firstLine(error));
@@ -82,7 +82,7 @@ glm::dmat4 localMatrix(const tinygltf::Node& node) {
   return local;
 }
 
-// A camera looks down -Z of its node. How far away its target is does not matter to the picture.
+// A camera looks down -Z of its node. The distance of its target does not change the image.
 void addView(const GltfFile& file, const tinygltf::Node& node, const glm::dmat4& world,
              Scene& scene) {
   if (std::size_t(node.camera) >= file.model.cameras.size())
@@ -117,7 +117,7 @@ void addMesh(const GltfFile& file, const tinygltf::Node& node, const glm::dmat4&
     const tinygltf::Primitive& primitive = mesh.primitives[i];
     const std::string place =
         fmt::format("{}: mesh {} '{}', primitive {}", file.path, node.mesh, mesh.name, i);
-    // The last of `materials` is for primitives that name none.
+    // The last of `materials` is for primitives without a material.
     if (primitive.material >= int(materials.size()) - 1)
       fail<InputError>("{}: material {} does not exist, the file has {}", place, primitive.material,
                        materials.size() - 1);
@@ -127,7 +127,8 @@ void addMesh(const GltfFile& file, const tinygltf::Node& node, const glm::dmat4&
   }
 }
 
-// The nodes to start from: those of the file's scene, or without scenes all that have no parent.
+// The root nodes: those of the file's scene or, in a file without scenes, all nodes without a
+// parent.
 std::vector<int> rootNodes(const tinygltf::Model& model) {
   if (!model.scenes.empty()) {
     const bool named =
@@ -148,7 +149,7 @@ void addNodes(const GltfFile& file, const std::vector<GltfMaterial>& materials, 
     int node;
     glm::dmat4 parent;
   };
-  // An explicit stack, since a file may nest its nodes deeper than ours is.
+  // An explicit stack, because a file may nest nodes deeper than the program's stack allows.
   std::vector<Visit> stack;
   const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.push_back({*node, parent});

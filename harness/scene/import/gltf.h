@@ -7,13 +7,14 @@
 namespace oitlab {
 
 /// Reads a glTF 2.0 file (.glb or .gltf) through tinygltf: the triangles of its scene with base
-/// colour, alpha and cameras (as views). Primitive ids follow the file: nodes depth first,
-/// primitives, triangles. What can be mended is, and is counted in Scene::repairs; for the rest
-/// InputError, naming file and place. Bounds and the default view are left to loadScene().
+/// colour and alpha, and its cameras as views. Primitive ids follow the file: nodes depth first,
+/// then primitives, then triangles. Faults that can be repaired are, and are counted in
+/// Scene::repairs. For others it throws InputError with file and place. loadScene() adds the bounds
+/// and the default view.
 ///
-/// KHR_materials_transmission becomes opacity: baseColor.a is scaled by 1 - transmissionFactor,
-/// exactly, so that a clear pane is invisible (an opacity override makes it seen). The material
-/// becomes BLEND; a MASK one keeps its cut-out, its cutoff scaled alike.
+/// KHR_materials_transmission becomes opacity: baseColor.a is multiplied by 1 - transmissionFactor.
+/// Thus a clear pane is invisible, unless there is an opacity override. The material becomes BLEND.
+/// A MASK material keeps its cut-out: its cutoff is scaled by the same factor.
 Scene loadGltf(const std::filesystem::path& path);
 
 }  // namespace oitlab

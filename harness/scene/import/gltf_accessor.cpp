@@ -10,12 +10,12 @@ namespace {
 
 template <typename T>
 T load(const unsigned char* from) {
-  T value;  // the file may not keep the alignment that it should
+  T value;  // copied, because a faulty file may not be aligned
   std::memcpy(&value, from, sizeof value);
   return value;
 }
 
-// glTF 2.0, 3.6.2.2: how normalised integers become floats.
+// Normalised integers as floats: glTF 2.0, section 3.6.2.2.
 template <typename T>
 float loadInteger(const unsigned char* from, bool normalize) {
   const float value = float(load<T>(from));
@@ -66,7 +66,7 @@ GltfAccessor::GltfAccessor(const GltfFile& file, int index, const std::string& p
   const std::size_t element = std::size_t(bytes) * std::size_t(components_);
   const std::size_t stride = file.model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
   stride_ = stride == 0 ? element : stride;
-  // In this order nothing overflows: count and stride are below 2^32 and 2^8 in a sane file.
+  // In this order nothing overflows: in a valid file count is below 2^32 and stride below 2^8.
   const std::size_t available =
       accessor.byteOffset <= view.size() ? view.size() - accessor.byteOffset : 0;
   if (count_ > 0 && (available < element || (count_ - 1) > (available - element) / stride_))
@@ -95,7 +95,7 @@ float GltfAccessor::number(std::size_t element, int component, bool normalize) c
       return float(load<std::uint32_t>(at + 4 * component));
     case TINYGLTF_COMPONENT_TYPE_INT:
       return float(load<std::int32_t>(at + 4 * component));
-    default:  // TINYGLTF_COMPONENT_TYPE_DOUBLE: tinygltf's own
+    default:  // TINYGLTF_COMPONENT_TYPE_DOUBLE, which only tinygltf knows
       return float(load<double>(at + 8 * component));
   }
 }

@@ -30,7 +30,7 @@ float share(double value) {  // NaN becomes 0
   return value > 0.0 ? float(std::min(value, 1.0)) : 0.0f;
 }
 
-// The KHR_texture_transform of a texture reference; the matrix is that of its specification.
+// The KHR_texture_transform of a texture reference, as the matrix of its specification.
 void readUvTransform(const tinygltf::TextureInfo& info, GltfMaterial& material) {
   material.texCoord = std::max(info.texCoord, 0);
   const tinygltf::Value* transform = extension(info.extensions, "KHR_texture_transform");
@@ -69,14 +69,14 @@ Material readMaterial(const tinygltf::Material& from) {
   return material;
 }
 
-// The encoded bytes of an image: in a buffer view, or kept by tinygltf from a data URI or file.
-// Empty when it is missing.
+// The encoded bytes of an image, from a buffer view, a data URI or a file. Empty when it is
+// missing.
 std::span<const unsigned char> encodedImage(const GltfFile& file, const tinygltf::Image& image) {
   if (image.bufferView >= 0) return gltfBytes(file, image.bufferView, file.path);
   return image.image;
 }
 
-// The image of a material's base colour, -1 when it has none, -2 when it has one that is missing.
+// The image of a material's base colour; -1 when it has none, -2 when its image is missing.
 int imageOf(const tinygltf::Model& model, const tinygltf::Material& material) {
   const int texture = material.pbrMetallicRoughness.baseColorTexture.index;
   if (texture < 0) return -1;
@@ -85,7 +85,7 @@ int imageOf(const tinygltf::Model& model, const tinygltf::Material& material) {
   return image >= 0 && std::size_t(image) < model.images.size() ? image : -2;
 }
 
-// Decodes each image that a base colour uses, once; returns the texture of each image, -1 for none.
+// Decodes each image that a base colour uses once. Returns the texture of each image, -1 for none.
 std::vector<int> readTextures(const GltfFile& file, Scene& scene) {
   const auto& images = file.model.images;
   std::vector<int> textureOf(images.size(), -1);

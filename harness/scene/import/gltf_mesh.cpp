@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNotYet = 0xffffffffu;
 
-// Beyond this the square of a length overflows a float, and so would bounds and normals.
+// The square of a larger length overflows a float, and bounds and normals need such squares.
 constexpr float kLargest = 1e18f;
 
 bool usable(const glm::vec3& v) {  // false for NaN too
@@ -26,7 +26,8 @@ std::vector<glm::uvec3> assemble(const std::vector<std::uint32_t>& indices, int 
     triangles.reserve(n / 3);
     for (std::size_t i = 0; i + 2 < n; i += 3)
       triangles.emplace_back(indices[i], indices[i + 1], indices[i + 2]);
-  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {  // glTF 2.0, 3.7.2.1: odd ones turn round
+  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {  // glTF 2.0, 3.7.2.1: odd triangles have the
+                                                      // other winding
     for (std::size_t i = 0; i + 2 < n; ++i)
       triangles.emplace_back(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
   } else {
@@ -43,8 +44,9 @@ glm::vec3 faceNormal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c)
   return length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0, 1, 0);
 }
 
-// Normals move by the inverse transpose. The cofactors are that times the determinant, and exist
-// for singular matrices too; the sign of the determinant is put right for mirrors.
+// Normals are transformed by the inverse transpose. The cofactor matrix is the inverse transpose
+// times the determinant, and also exists for singular matrices. The sign of the determinant is
+// corrected for reflections.
 glm::dmat3 normalMatrix(const glm::dmat4& world) {
   const glm::dmat3 m(world);
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
@@ -52,7 +54,7 @@ glm::dmat3 normalMatrix(const glm::dmat4& world) {
   return glm::determinant(m) < 0.0 ? -cofactors : cofactors;
 }
 
-// The primitive's vertex attributes, each checked to have an element for each vertex.
+// The primitive's vertex attributes. Each is checked to have one element per vertex.
 struct Attributes {
   GltfAccessor position;
   std::optional<GltfAccessor> normal, uv, color;
@@ -141,8 +143,8 @@ void readGltfPrimitive(const GltfFile& file, const tinygltf::Primitive& primitiv
     return std::uint32_t(scene.vertices.size() - 1);
   };
 
-  // Only the vertices that this primitive uses: files share one big list among many primitives.
-  // Without normals, glTF wants flat ones, so that no vertex can be shared.
+  // Only the vertices that this primitive uses, because many primitives may share one large list.
+  // For a primitive without normals glTF demands flat ones, and then no vertex can be shared.
   std::vector<std::uint32_t> emitted(from.normal ? count : 0, kNotYet);
   scene.triangles.reserve(scene.triangles.size() + triangles.size());
   for (glm::uvec3 triangle : triangles) {

@@ -18,10 +18,11 @@
 namespace oitlab {
 namespace {
 
-constexpr float kLargest = 1e18f;  // as for glTF: beyond it the square of a length overflows
+constexpr float kLargest = 1e18f;  // as for glTF: the square of a larger length overflows
 
-// Hands tinyobjloader the file line by line, so that its callbacks can be told the line they are
-// about, and looks at the numbers of each line first: tinyobjloader reads what it cannot as 0.
+// Passes the file to tinyobjloader line by line, so that its callbacks know the line number. Checks
+// the numbers of each line first, because tinyobjloader reads a number that it does not understand
+// as 0.
 class LineBuffer : public std::streambuf {
  public:
   LineBuffer(std::istream& stream, std::string path) : stream_(stream), path_(std::move(path)) {}
@@ -35,7 +36,7 @@ class LineBuffer : public std::streambuf {
     if (!std::getline(stream_, text_)) return traits_type::eof();
     ++line_;
     if (!text_.empty() && text_.back() == '\r') text_.pop_back();
-    // A carriage return or NUL within a line would part us from the parser's idea of lines.
+    // With a carriage return or NUL inside a line the parser would count other lines than we do.
     for (char& c : text_)
       if (c == '\r' || c == '\0') c = ' ';
     checkNumbers();
@@ -124,7 +125,7 @@ class Reader {
   }
 
  private:
-  // OBJ counts from 1, and from -1 backwards; 0 is what tinyobjloader gives for none or nonsense.
+  // OBJ counts from 1, and backwards from -1. tinyobjloader gives 0 for a missing or invalid index.
   int index(int raw, std::size_t size, const char* what, bool needed) const {
     if (raw == 0 && !needed) return -1;
     const std::int64_t found = raw > 0 ? std::int64_t(raw) - 1 : std::int64_t(size) + raw;
@@ -142,7 +143,7 @@ class Reader {
       return scene_.repaired("triangles that repeat a corner dropped");
     if (!material_) {
       material_ = materials_.find(wanted_);
-      known_.clear();  // vertices are not shared between materials
+      known_.clear();  // materials do not share vertices
     }
     const glm::dvec3 cross =
         glm::cross(glm::dvec3(q) - glm::dvec3(p), glm::dvec3(r) - glm::dvec3(p));
@@ -218,7 +219,7 @@ Scene loadObj(const std::filesystem::path& path) {
   };
   calls.usemtl_cb = [](void* to, const char* name, int) { reader(to).useMaterial(name); };
   std::istream input(&lines);
-  // An exception out of a stream buffer would be swallowed by the stream, unless it is told not to.
+  // By default a stream swallows exceptions that its buffer throws.
   input.exceptions(std::ios::badbit);
   std::string warning, error;
   tinyobj::LoadObjWithCallback(input, calls, &state, &libraries, &warning, &error);

@@ -6,14 +6,14 @@
 
 namespace oitlab {
 
-/// Reads a Wavefront OBJ file with its MTL libraries through tinyobjloader: polygons as fans of
-/// triangles (primitive ids in the file's order), normals, texture coordinates (turned to v down),
-/// materials with Kd, d or Tr, map_Kd and map_d (its red channel becomes the texture's alpha). A
-/// material with d < 1 or a transparent texture is BLEND, another OPAQUE. Textures are looked for
-/// beside the MTL. What can be mended is, and is counted in Scene::repairs (missing libraries,
-/// materials and textures, non-finite numbers, polygons of repeated corners); an index or number
-/// that cannot be meant is an InputError, naming file and line. Bounds and the default view are
-/// left to loadScene().
+/// Reads a Wavefront OBJ file with its MTL libraries through tinyobjloader. It reads polygons as
+/// fans of triangles (primitive ids in the file's order), normals, texture coordinates (flipped to
+/// v down), and materials with Kd, d or Tr, map_Kd and map_d, whose red channel becomes the
+/// texture's alpha. A material with d < 1 or a transparent texture is BLEND, any other is OPAQUE.
+/// Textures are searched beside the MTL file. Faults that can be repaired are, and are counted in
+/// Scene::repairs: missing libraries, materials and textures, non-finite numbers, polygons with
+/// repeated corners. For an invalid index or number it throws InputError with file and line.
+/// loadScene() adds the bounds and the default view.
 Scene loadObj(const std::filesystem::path& path);
 
 }  // namespace oitlab

@@ -15,13 +15,13 @@ float share(float value) {  // NaN becomes 0
   return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
 }
 
-// Files written on Windows are read elsewhere too.
+// Files that were written on Windows have backslashes in their paths.
 std::filesystem::path localPath(std::string name) {
   std::ranges::replace(name, '\\', '/');
   return name;
 }
 
-// Puts the mask into `color`'s alpha: the mask's own alpha if it has one, else its red.
+// Copies the mask to the alpha of `color`: the mask's alpha if it has one, else its red channel.
 void applyMask(const Texture& mask, Texture& color) {
   const std::size_t channel = mask.hasAlpha() ? 3 : 0;
   for (int y = 0; y < color.height; ++y)
@@ -48,7 +48,7 @@ int ObjMaterials::readTextures(const std::filesystem::path& folder, const std::s
       "textures left out, which are missing or unreadable",
       std::uint64_t(!color.empty() && !hasColor) + std::uint64_t(!alpha.empty() && !hasMask));
   if (!hasColor && !hasMask) return -1;
-  if (!hasColor) {  // white, with the mask as its alpha
+  if (!hasColor) {  // white, with the mask as alpha
     texture = {.name = mask.name, .width = mask.width, .height = mask.height};
     texture.rgba.assign(mask.rgba.size(), 255);
   }
@@ -74,7 +74,7 @@ void ObjMaterials::readLibrary(const std::string& name) {
     Material material{.name = materialName};
     for (int i = 0; i < 3; ++i) material.baseColor[i] = share(from.diffuse[i]);
     material.baseColor.a = share(from.dissolve);
-    // Exporters write a black Kd beside a texture and mean the texture.
+    // Some exporters write a black Kd beside a texture, which is to be ignored.
     if (!from.diffuse_texname.empty() && glm::vec3(material.baseColor) == glm::vec3(0.0f))
       material.baseColor = glm::vec4(1.0f, 1.0f, 1.0f, material.baseColor.a);
     material.texture = readTextures(path.parent_path(), from.diffuse_texname, from.alpha_texname);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the files of the OBJ loader share; nobody else includes it.
+// Shared by the files of the OBJ loader. No other file includes it.
 
 #include <filesystem>
 #include <map>
@@ -10,17 +10,17 @@
 
 namespace oitlab {
 
-/// The materials of an OBJ file's libraries, added to the scene as they are read.
+/// The materials of an OBJ file's libraries. They are added to the scene when they are read.
 class ObjMaterials {
  public:
   ObjMaterials(Scene& scene, std::filesystem::path folder)
       : scene_(scene), folder_(std::move(folder)) {}
 
-  /// Reads a library; one that is missing or broken is a repair.
+  /// Reads a library. One that is missing or invalid is a repair.
   void readLibrary(const std::string& name);
 
-  /// The index of the material of that name; the plain default for unknown names (a repair, once a
-  /// name) and for "".
+  /// The index of the material of that name. For "" and for unknown names it is the default
+  /// material; an unknown name is a repair, counted once.
   std::uint32_t find(const std::string& name);
 
  private:
@@ -30,7 +30,7 @@ class ObjMaterials {
   Scene& scene_;
   std::filesystem::path folder_;
   std::map<std::string, std::uint32_t> byName_;
-  std::map<std::string, int> textures_;  // by both file names
+  std::map<std::string, int> textures_;  // by the names of both files
 };
 
 }  // namespace oitlab

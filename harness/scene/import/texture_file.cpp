@@ -9,7 +9,7 @@
 namespace oitlab {
 namespace {
 
-constexpr int kLargestImage = 16384;  // texels a side: what every device can hold
+constexpr int kLargestImage = 16384;  // texels per side; every device has images of this size
 
 }  // namespace
 

@@ -7,11 +7,11 @@
 
 namespace oitlab {
 
-/// Decodes a PNG, JPEG or whatever else stb_image knows into `texture` as RGBA8; its name is left.
-/// False when there is no image to be had from the bytes, or one larger than devices hold.
+/// Decodes a PNG, a JPEG or any other format of stb_image into `texture` as RGBA8. Keeps its name.
+/// False when the bytes are not an image, or one larger than devices support.
 bool decodeTexture(std::span<const unsigned char> bytes, Texture& texture);
 
-/// The same from a file, named after it. False when it is missing or unreadable.
+/// The same for a file; the texture has its name. False when it is missing or unreadable.
 bool readTexture(const std::filesystem::path& path, Texture& texture);
 
 }  // namespace oitlab

@@ -1,4 +1,4 @@
-// The A-buffer: exact whatever sorts, masks and memory it is given; what it may lose it counts.
+// The A-buffer is exact with every sort, mask and memory setting, and counts what it may lose.
 #include <gmock/gmock.h>
 
 #include "abuffer/options.h"
@@ -25,8 +25,8 @@ std::string nameOf(const Settings& settings) {
   return text;
 }
 
-/// Zero differing pixels, in a frame as it is timed and in one whose stages are kept apart, and as
-/// many fragments as there are.
+/// Expects no differing pixel, in a frame as it is timed and in one with separated stages, and the
+/// right number of fragments.
 void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
                  const Settings& settings) {
   SCOPED_TRACE(nameOf(settings));
@@ -44,9 +44,9 @@ void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
   EXPECT_EQ(frame.counters.at("blended_fragments"), exact.frame.counters.at("fragments"));
 }
 
-/// One column of pixels for each of `depths`, with so many layers in an order that is no order:
-/// every fourth at the depth of the one before it, each with a colour of its own. The view is a
-/// pixel a unit, `rows` high.
+/// One column of pixels for each of `depths`, with that number of layers in a pseudo-random order.
+/// Every fourth layer has the depth of the one before it, and each has its own colour. In the view
+/// a pixel is one unit, and the view is `rows` high.
 Scene columns(const std::vector<int>& depths, int rows) {
   std::vector<std::array<glm::vec3, 3>> triangles;
   std::vector<glm::vec4> colors;
@@ -54,7 +54,7 @@ Scene columns(const std::vector<int>& depths, int rows) {
   for (std::size_t column = 0; column < depths.size(); ++column)
     for (int layer = 0; layer < depths[column]; ++layer) {
       const int place = (layer * 7919) % depths[column];  // a permutation: 7919 is prime
-      // Near enough to each other that no column moves into the next.
+      // The depths are so close that perspective does not move a column into the next.
       const float z = -1e-5f * float(place % 4 == 3 ? place - 1 : place);
       const float left = 2.0f * (float(column) - half) / float(rows);
       const float right = left + 2.0f / float(rows), high = 2.0f, low = -2.0f;
@@ -76,7 +76,7 @@ const std::vector<int> aroundEveryBound = {1,   2,   7,   8,   9,   15,  16,  17
                                            31,  32,  33,  63,  64,  65,  100, 127,
                                            128, 129, 253, 254, 255, 256, 257, 300};
 
-// Equal depths, every choice of sort, mask and memory, and pixels on both sides of max_fragments.
+// Equal depths, every choice of sort, mask and memory, and pixels below and above max_fragments.
 TEST_F(Abuffer, EveryChoiceIsExactOnRandomTriangles) {
   RenderFixture fixture(randomSoup(21, 160), 40, 32);
   const auto exact = fixture.render("reference");
@@ -128,7 +128,7 @@ TEST_F(Abuffer, CountsThePixelsOfEachInterval) {
   }
 }
 
-// A stencil stops at 255: from there on it does not know.
+// A stencil saturates at 255 and cannot tell larger counts apart.
 TEST_F(Abuffer, PixelsBeyondTheStencilsRangeAreDeep) {
   RenderFixture fixture = columnFixture({253, 254, 255, 256, 700}, 2);
   const auto exact = fixture.render("reference");
@@ -141,17 +141,18 @@ TEST_F(Abuffer, PixelsBeyondTheStencilsRangeAreDeep) {
             0u);
 }
 
-// Where alpha is cut off the stencil has counted already: more than the list holds, never less.
+// The stencil also counts fragments that the alpha cutoff discards: its count may be larger than
+// the list, but never smaller.
 TEST_F(Abuffer, FragmentsThatAlphaCutsOffAreOnlyCountedByTheStencil) {
   Scene scene = columns({20, 300}, 2);
-  scene.materials[0].alphaCutoff = 0.05f;  // of alphas from 0.02 to 0.10
+  scene.materials[0].alphaCutoff = 0.05f;  // alphas are from 0.02 to 0.10
   RenderFixture fixture(scene, 2, 2);
   const auto exact = fixture.render("reference");
   ASSERT_LT(exact.frame.counters.at("fragments"), 2u * 320);
   for (const std::string& mask : masks) expectExact(fixture, exact, {{"mask", mask}});
 }
 
-// A thousand layers from back to front are the most work for insertion sort.
+// A thousand layers from back to front are the worst case of insertion sort.
 TEST_F(Abuffer, SortsAThousandLayersInAnyOrder) {
   for (const bool backToFront : {true, false}) {
     std::vector<std::array<glm::vec3, 3>> layers;
@@ -170,8 +171,8 @@ TEST_F(Abuffer, SortsAThousandLayersInAnyOrder) {
   }
 }
 
-// More than one round of the sort in the lists, beside deep pixels that are done in the first and
-// pixels of a single layer.
+// Pixels that need more than one round of the sort in their lists, beside deep pixels that need
+// only the first, and pixels of a single layer.
 TEST_F(Abuffer, HasNoLimitOfLayers) {
   RenderFixture fixture = columnFixture({1, 3000, 8, 300});
   const auto exact = fixture.render("reference");
@@ -210,13 +211,13 @@ TEST_F(Abuffer, IsTheSameUnderShuffledSubmissionAndFromRunToRun) {
   }
 }
 
-// A stencil that counts is tested against a copy of the opaque depth: bit by bit, since fragments
-// at the very depth of an opaque surface stay.
+// A counting stencil is tested against a copy of the opaque depth. The copy must be equal bit for
+// bit, because fragments at exactly the depth of an opaque surface are kept.
 TEST_F(Abuffer, FragmentsAreTestedAgainstOpaqueDepth) {
   Scene scene = columns({40, 41}, 8);
   Material opaque;
   scene.materials.push_back(opaque);
-  const float z = -1e-5f * 20.0f;  // that of a layer
+  const float z = -1e-5f * 20.0f;  // the depth of a layer
   const auto first = std::uint32_t(scene.vertices.size());
   for (const glm::vec3& corner : {glm::vec3{-9, -1, z}, glm::vec3{9, -1, z}, glm::vec3{0, 0.5f, z}})
     scene.vertices.push_back({corner, packNormal({0.0f, 0.0f, 1.0f}), {}, 0xffffffffu, 1});
@@ -238,12 +239,12 @@ TEST_F(Abuffer, EveryTargetFormatIsThatOfTheReference) {
   }
 }
 
-// Lists may hold less of a colour than there is; what is in local memory makes no difference.
+// Colours in lists may be stored with less precision. The format in local memory changes nothing.
 TEST_F(Abuffer, ColoursAreHeldAsAskedFor) {
   RenderFixture fixture = columnFixture({1, 9, 40, 100});
   const auto exact = fixture.render("reference");
   for (const char* local : {"keys", "fragments"}) {
-    // 256 fragments of 24 bytes, and half as much to merge in: 9 KiB an invocation.
+    // 256 fragments of 24 bytes, and half as much for merging: 9 KiB per invocation.
     expectExact(fixture, exact, {{"local", local}, {"max_fragments", "256"}});
     for (const auto& [color, error] : {std::pair{"rgba16f", 1e-3}, std::pair{"rgba8", 1.0 / 128}}) {
       const auto result = fixture.render(
@@ -334,7 +335,7 @@ TEST_F(Abuffer, OnlyTheMaskInUseTakesMemory) {
   EXPECT_EQ(buffersOf({{"node_color", "rgba8"}, {"initial_depth", "0"}}).at("fragment nodes"), 16u);
 }
 
-/// Where nothing is to be seen.
+/// A camera that sees nothing.
 Camera away() {
   Camera camera = frontCamera();
   camera.eye = {0, 0, 5};
@@ -342,8 +343,8 @@ Camera away() {
   return camera;
 }
 
-// The experiment of figure 3 draws nothing, whatever the length of its array: up to that of the
-// experiment, 8 KiB.
+// The experiment of figure 3 draws nothing, for every length of its array up to the 8 KiB of the
+// experiment.
 TEST_F(Abuffer, LocalMemoryLeavesTheImageAsItWas) {
   RenderFixture fixture(randomSoup(1, 8), 33, 9);
   const std::string background = fixture.render("reference", {}, away()).hash;
@@ -354,8 +355,8 @@ TEST_F(Abuffer, LocalMemoryLeavesTheImageAsItWas) {
   }
 }
 
-// Drivers may refuse more: NVIDIA's 580.159.04 does at 16 KiB an invocation, by an error that names
-// no shader. Then it is ours to say which it was and what helps.
+// Drivers may refuse longer arrays: NVIDIA's 580.159.04 does so at 16 KiB per invocation, with an
+// error that names no shader. Then the program says which shader it was and what to change.
 TEST_F(Abuffer, MuchLocalMemoryWorksOrIsRefusedWithAReason) {
   RenderFixture fixture(randomSoup(1, 8), 33, 9);
   const std::string background = fixture.render("reference", {}, away()).hash;
@@ -373,7 +374,7 @@ TEST_F(Abuffer, MuchLocalMemoryWorksOrIsRefusedWithAReason) {
   };
   refusedOr(background, "local_memory", {{"size", "1024"}, {"passes", "3"}}, away(),
             {"local_memory.frag", "SIZE=1024", "16384 bytes", "lower 'size'"});
-  // One pipeline for each interval of lengths: it need not be the longest that is refused.
+  // There is one pipeline per interval of lengths, and the refused one need not be the longest.
   refusedOr(exact, "abuffer", {{"local", "fragments"}, {"max_fragments", "1024"}},
             fixture.defaultView(),
             {"abuffer/resolve.frag", "MAX_FRAGMENTS=", " bytes of local memory",

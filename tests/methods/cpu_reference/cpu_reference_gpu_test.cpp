@@ -1,4 +1,4 @@
-// The CPU renderer as the judge of `reference`, and as a method.
+// Compares `reference` with the CPU renderer, and tests the CPU renderer as a method.
 #include <gmock/gmock.h>
 
 #include "support/shared_scenes.h"
@@ -26,8 +26,8 @@ TEST_F(CpuReferenceAgainstDevice, RandomSoupsWithDuplicates) {
     expectTruth(reference, randomSoup(seed, 200), 96, 96);
 }
 
-// With black glass of one opacity everywhere, what is left of the background tells how many layers
-// there are before it.
+// If everything is black glass of one opacity, the remaining background shows how many layers are
+// in front of it.
 TEST_F(CpuReferenceAgainstDevice, FragmentsOfEachPixelAreAsMany) {
   constexpr double opacity = 0.05;
   for (const char* name : {"boxes", "teapot", "soup"}) {
@@ -63,7 +63,7 @@ TEST_F(CpuReferenceAgainstDevice, TexturedScenes) {
   }
 }
 
-// As a method it is what renderOnCpu() gives, in every format.
+// The method gives the result of renderOnCpu(), in every format.
 TEST_F(CpuReferenceAgainstDevice, TheMethodUploadsTheSamePicture) {
   const Scene scene = loadScene({"boxes", {}, 0.02f});
   const CpuImage truth = renderOnCpu(scene, findView(scene, "default"), 65, 33);

@@ -1,4 +1,4 @@
-// The CPU renderer against values worked out by hand.
+// Compares the CPU renderer with values that were computed by hand.
 #include "cpu_reference/cpu_renderer.h"
 
 #include <gmock/gmock.h>
@@ -51,7 +51,8 @@ TEST(CpuReference, OpaqueFragmentsHideWhatIsBehindThem) {
   EXPECT_NEAR(colorAt(image, 1, 1).b, 0.0, 1e-12);
 }
 
-// GREATER_OR_EQUAL in the order of submission for opaque ones; the lower id in front for others.
+// At equal depth the opaque triangle that is submitted last wins; of transparent triangles the one
+// with the lower id is in front.
 TEST(CpuReference, EqualDepthsAreOrderedByPrimitiveId) {
   const glm::vec4 red{1, 0, 0, 0.5f}, green{0, 1, 0, 0.5f};
   Scene scene = triangleScene({layerAt(0), layerAt(0)}, {red, green}, frontCamera());
@@ -67,8 +68,8 @@ TEST(CpuReference, EqualDepthsAreOrderedByPrimitiveId) {
 }
 
 TEST(CpuReference, AttributesAreInterpolatedInPerspective) {
-  // A floor at y = -1 under the eye at (0, 0, 1): a pixel at screen height s (down) sees distance
-  // 1 / s, that is z = 1 - 1 / s. Red grows from 0 at z = 0 to 1 at z = -8.
+  // A floor at y = -1 under the eye at (0, 0, 1). A pixel at screen height s (down) sees the
+  // distance 1 / s, which is z = 1 - 1 / s. Red grows from 0 at z = 0 to 1 at z = -8.
   Scene scene = triangleScene({{glm::vec3{-50, -1, 0}, {50, -1, 0}, {50, -1, -8}},
                                {glm::vec3{-50, -1, 0}, {50, -1, -8}, {-50, -1, -8}}},
                               {{0, 0, 0, 1}}, frontCamera());
@@ -80,13 +81,13 @@ TEST(CpuReference, AttributesAreInterpolatedInPerspective) {
   }
 }
 
-// A transparent triangle through the near plane: fragments nearer than it are gone, and the part
-// behind the eye is nowhere.
+// A transparent triangle through the near plane: it has no fragments in front of the near plane,
+// and none behind the eye.
 TEST(CpuReference, NearPlaneCutsFragmentsNotTriangles) {
   Camera camera = frontCamera();  // at z = 1, 90 degrees
   camera.near = 2.0f;
-  // A floor at y = -1 that reaches from far behind the eye to far in front: screen height s sees
-  // distance 1 / s, so with the near plane at 2 only s < 0.5 is left.
+  // A floor at y = -1 from far behind the eye to far in front. Screen height s sees the distance 1
+  // / s, so with the near plane at 2 only s < 0.5 is visible.
   const Scene scene = triangleScene({{glm::vec3{-999, -1, 99}, {999, -1, 99}, {0, -1, -999}}},
                                     {{1, 1, 1, 0.5f}}, camera);
   const CpuImage image = renderOnCpu(scene, camera, 5, 64);
@@ -114,8 +115,8 @@ Scene sheet(int cells, float z, float tilt) {
 }
 
 TEST(CpuReference, WatertightSheetCoversEveryPixelOnce) {
-  // 32 pixels to a scene unit, and cells of 1 or 1/4: corners and edges on the centres of pixels,
-  // once the eye is moved by half a pixel.
+  // A scene unit is 32 pixels and cells have sides of 1 or 1/4, so corners and edges are on pixel
+  // centres when the eye is moved by half a pixel.
   for (const int cells : {37, 128, 512})
     for (const float shift : {0.0f, 1.0f / 64, 0.3f}) {
       Camera camera = frontCamera();
@@ -127,14 +128,14 @@ TEST(CpuReference, WatertightSheetCoversEveryPixelOnce) {
 }
 
 TEST(CpuReference, WatertightSheetCoversEveryPixelOnceAtGrazingAngles) {
-  // Slopes of 3 to 60 through and under the eye, which is 1 above: half of the sheet lies behind
-  // it. Above the horizon at 1 / slope there is nothing; doubts are for what float32 may make of
-  // it.
+  // Slopes of 3 to 60 under the eye, which is 1 above the sheet; half of the sheet is behind the
+  // eye. Above the horizon at 1 / slope there is nothing. Pixels are in doubt where float32 may
+  // round to either side.
   for (const float slope : {3.0f, 10.0f, 60.0f})
     for (const int cells : {9, 64}) {
       const CpuImage image = renderOnCpu(sheet(cells, 0.0f, slope), frontCamera(), 101, 67);
       EXPECT_LE(image.maxFragmentsPerPixel(), 1u) << slope;
-      // z = slope * y meets the ray (0, -t v, 1 - t) at t = 1 / (1 - slope * v) for v down.
+      // z = slope * y intersects the ray (0, -t v, 1 - t) at t = 1 / (1 - slope * v), for v down.
       for (int y = 0; y < 67; ++y) {
         const double v = (2 * y + 1) / 67.0 - 1, t = 1 / (1 - double(slope) * v);
         const bool hit = t > 0.05 && t * std::abs(v) < 64;
@@ -156,14 +157,14 @@ TEST(CpuReferenceDoubts, DepthsThatFloatsCannotTellApart) {
 }
 
 TEST(CpuReferenceDoubts, SurfacesThatCrossWithinThePixelGrid) {
-  // One at z = 0, one at z = 4 x: they cross in the line x = 0, which lies between two columns, and
-  // snapped vertices move the steep one by no more than 1/256 pixel.
+  // One triangle is at z = 0, one at z = 4 x. They intersect in the line x = 0 between two columns.
+  // Snapping its vertices moves the steep one by at most 1/256 pixel.
   const std::array<glm::vec3, 3> steep = {glm::vec3{-9, -9, -36}, {9, -9, 36}, {0, 99, 0}};
   const Scene scene =
       triangleScene({layerAt(0), steep}, {{1, 0, 0, 0.5f}, {0, 1, 0, 0.5f}}, frontCamera());
   EXPECT_EQ(renderOnCpu(scene, frontCamera(), 64, 64).pixelsInDoubt(doubt::depthOrder), 0u);
-  Camera moved =
-      frontCamera();  // by half a pixel and a bit: the line passes centres at 1/400 pixel
+  Camera moved = frontCamera();  // moved by a little more than half a pixel: the line is 1/400
+                                 // pixel from centres
   moved.eye.x = moved.target.x = (0.5f + 1 / 400.0f) / 32;
   const CpuImage image = renderOnCpu(scene, moved, 64, 64);
   EXPECT_EQ(image.pixelsInDoubt(doubt::depthOrder), 64u);
@@ -172,8 +173,8 @@ TEST(CpuReferenceDoubts, SurfacesThatCrossWithinThePixelGrid) {
 
 TEST(CpuReferenceDoubts, EdgesCloserToACentreThanTheGrid) {
   const auto render = [](float pixels, std::optional<AlphaMode> front) {
-    // An upright edge, right of the centre of column 32 by `pixels`, of a triangle to its left; and
-    // something in front of it all.
+    // A triangle with a vertical edge that is `pixels` to the right of the centre of column 32, and
+    // another triangle in front of everything.
     const float edge = (0.5f + pixels) / 32;
     Scene scene = triangleScene({{glm::vec3{edge, -99, 0}, {edge, 99, 0}, {-300, 0, 0}}},
                                 {{1, 1, 1, 0.5f}}, frontCamera());

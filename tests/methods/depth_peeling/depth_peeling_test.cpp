@@ -1,5 +1,5 @@
-// Depth peeling: with all layers the reference's image bit for bit, with fewer it says what it
-// missed.
+// Depth peeling with all layers gives the reference's image bit for bit. With fewer it counts what
+// it missed.
 #include "support/gpu.h"
 
 #include "quality/compare.h"
@@ -30,7 +30,7 @@ std::array<glm::vec3, 3> across(float z) {
   return {glm::vec3{-99, -99, z}, {99, -99, z}, {0, 99, z}};
 }
 
-/// One colour a layer, all different.
+/// One colour per layer, all different.
 std::vector<glm::vec4> colors(int count, float alpha) {
   std::vector<glm::vec4> colors;
   for (int i = 0; i < count; ++i)
@@ -54,7 +54,7 @@ TEST_F(DepthPeeling, IsTheReferenceOnEveryScene) {
   }
 }
 
-// Fragments whose alpha is below the cutoff are found by the rasterizer, but are not there.
+// Fragments with an alpha below the cutoff do not count as layers.
 TEST_F(DepthPeeling, HolesOfACutoffAreNoLayers) {
   Scene scene = randomSoup(24, 60);
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)
@@ -71,7 +71,8 @@ TEST_F(DepthPeeling, HolesOfACutoffAreNoLayers) {
   }
 }
 
-// Random triangles, a quarter of them at the depth of another; any order of submission; run to run.
+// Random triangles, a quarter of them at the depth of another one, in several orders of submission
+// and several runs.
 TEST_F(DepthPeeling, IsTheReferenceOnRandomSoupsHoweverSubmitted) {
   for (const std::uint64_t seed : {21, 22, 23}) {
     const Scene soup = randomSoup(seed, 60);
@@ -87,7 +88,7 @@ TEST_F(DepthPeeling, IsTheReferenceOnRandomSoupsHoweverSubmitted) {
   }
 }
 
-// The depth test alone would keep one of them.
+// With the depth test alone only one of them would be kept.
 TEST_F(DepthPeeling, CoplanarFragmentsAreAllLayers) {
   const Scene scene = triangleScene(std::vector(20, across(0)), colors(20, 0.2f), frontCamera());
   const std::string exact = RenderFixture(scene, 16, 16).render("reference").hash;
@@ -101,8 +102,8 @@ TEST_F(DepthPeeling, CoplanarFragmentsAreAllLayers) {
   }
 }
 
-// Everitt's passes, and one that finds the first layer; half of them from both ends. Depths without
-// 64-bit atomics take another pass a layer.
+// The passes of Everitt's method, and one that finds the first layer; half as many from both ends.
+// Without 64-bit atomics there is another pass per layer.
 TEST_F(DepthPeeling, CountsItsPasses) {
   RenderFixture fixture(triangleScene({across(0), across(-1), across(-2), across(-3), across(-4)},
                                       colors(5, 0.5f), frontCamera()),
@@ -115,8 +116,8 @@ TEST_F(DepthPeeling, CountsItsPasses) {
   }
 }
 
-// A limited number of layers is the exact image of these layers alone: the nearest, or (dual) those
-// nearest to either end.
+// With a limited number of layers the image is exactly that of these layers alone: the nearest
+// ones, or in dual mode those that are nearest to either end.
 TEST_F(DepthPeeling, FewerLayersAreTheNearestOfAnEnd) {
   const std::vector<glm::vec4> all = colors(5, 0.4f);
   const auto exactOf = [&](const std::vector<int>& layers) {
@@ -178,7 +179,8 @@ TEST_F(DepthPeeling, CountsTheFragmentsThatItMissed) {
   }
 }
 
-// Blended as published, the back half is rounded in another order: a float32 unit or two a layer.
+// Blended as published, the back half is rounded in another order: one or two float32 units per
+// layer.
 TEST_F(DepthPeeling, DualBlendingOfTheBackOnlyRounds) {
   RenderFixture fixture(loadScene({"boxes", {}, 0.05f}), 64, 36);
   const auto exact = fixture.render("reference");
@@ -190,8 +192,8 @@ TEST_F(DepthPeeling, DualBlendingOfTheBackOnlyRounds) {
   EXPECT_EQ(peeled.frame.counters.at("missed_fragments"), 0u);
 }
 
-// More passes than the first recording holds; half of the pixels need only one. And the same method
-// object under a camera that moves: the frame holds the passes that it needs, no fewer and no more.
+// More passes than the first recording has, while half of the pixels need only one. Then the same
+// method object with a moving camera: each frame has exactly the passes that it needs.
 TEST_F(DepthPeeling, FindsTheNumberOfPasses) {
   std::vector<std::array<glm::vec3, 3>> layers = {across(-9)};
   for (int i = 0; i < 299; ++i) {

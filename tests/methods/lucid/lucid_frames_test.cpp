@@ -1,5 +1,5 @@
-// LucidRaster over several frames and in frames of every shape: a method that has grown, or has
-// been elsewhere, makes the image that a fresh one makes.
+// LucidRaster over several frames, and in frames of many sizes. After other frames, which may have
+// enlarged its buffers, a method gives the same image as a new one.
 #include "support/planted.h"
 #include "support/truth.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 class LucidFrames : public GpuTest {};
 
-/// From almost nothing to everything, into the middle of it (vertices behind the eye), and back.
+/// From almost nothing to the whole scene, into its centre with vertices behind the eye, and back.
 std::vector<Camera> journey(const Scene& scene) {
   const Camera full = findView(scene, "default");
   Camera away = full, aside = full, inside = full;
@@ -39,9 +39,9 @@ TEST_F(LucidFrames, AMethodThatMovesOnMakesTheImagesOfFreshOnes) {
       EXPECT_EQ(moved.hash, fresh.hash);
       for (const char* counter : {"fragments", "half_blocks", "bin_entries", "visible_quads"})
         EXPECT_EQ(moved.frame.counters.at(counter), fresh.frame.counters.at(counter)) << counter;
-      // As it is measured: without the counting.
+      // As in a measurement: without counting.
       EXPECT_EQ(fixture.render(*plain, camera, false).hash, fresh.hash);
-      // What it has grown it keeps: after the fullest views no frame is recorded twice.
+      // Buffers stay enlarged: after the fullest views no frame is recorded twice.
       if (frame > 4) {
         EXPECT_EQ(moved.frame.recordings, 1);
       }
@@ -51,7 +51,7 @@ TEST_F(LucidFrames, AMethodThatMovesOnMakesTheImagesOfFreshOnes) {
   }
 }
 
-// Deep pixels come and go: the lists of the last frame are not those of this one.
+// Deep pixels appear and disappear: a frame must not use the lists of the last frame.
 TEST_F(LucidFrames, DeepPixelsComeAndGo) {
   RenderFixture fixture(layers(2500, 1.0f, 0.3f, 0.02f), 10, 6);
   const auto method = fixture.make("lucid");
@@ -88,7 +88,7 @@ TEST_F(LucidFrames, AnySize) {
     const Verdict verdict = judge(ours.image, truth, tolerance);
     SCOPED_TRACE(fmt::format("{} x {}", width, height));
     EXPECT_EQ(verdict.wrong, 0u);
-    // The excuse of a pixel at an edge; one of them is more than 0.1% of a small frame.
+    // Allows for a pixel at an edge; a single one is more than 0.1% of a small frame.
     EXPECT_LE(double(verdict.edges + verdict.orders), std::ceil(0.001 * width * height));
     const auto bins = std::uint64_t((width + 31) / 32) * std::uint64_t((height + 31) / 32);
     const auto& counters = ours.frame.counters;
@@ -100,9 +100,8 @@ TEST_F(LucidFrames, AnySize) {
 TEST_F(LucidFrames, AnyFormat) {
   const Scene scene = randomSoup(17, 60);
   const Image exact = RenderFixture(scene, 64, 48).render("lucid").image;
-  // Background and result are each rounded to the format: by half a step of 1/255 (an NVIDIA H200
-  // comes to 0.56 in all); half precision has steps of 2^-11 below 1, and llvmpipe rounds towards
-  // 0.
+  // Background and result are both rounded to the format: by half a step of 1/255, and an NVIDIA
+  // H200 has 0.56 in all. Half floats have steps of 2^-11 below 1, and llvmpipe rounds towards 0.
   for (const auto& [format, error] :
        {std::pair(TargetFormat::rgba8, 1.0 / 255), {TargetFormat::rgba16f, 0x1p-10}}) {
     const Image image = RenderFixture(scene, 64, 48, {}, format).render("lucid").image;

@@ -1,6 +1,5 @@
-// LucidRaster: with the repair one image, bit for bit, whatever the depth filter, the order of
-// submission and the run; without it, no wrong pixel that is not noticed; and what the other
-// parameters do.
+// LucidRaster with repair gives one image, bit for bit, for every depth filter, order of submission
+// and run. Without repair it notices every wrong pixel. Also tests the other parameters.
 #include "quality/compare.h"
 #include "support/planted.h"
 #include "support/truth.h"
@@ -20,7 +19,7 @@ TEST_F(LucidOrder, IsOneImageForEveryFilterShuffleAndRun) {
     for (const char* filter : {"1", "2", "8", "16"})
       EXPECT_EQ(fixture.render("lucid", {{"depth_filter", filter}}).hash, first.hash)
           << scene.name << ", depth filter " << filter;
-    // Which of its programs a pixel goes through does not show, and some go through each.
+    // It does not matter for the image which programs process a pixel, and each program has pixels.
     const auto on = fixture.render("lucid");
     const auto off = fixture.render("lucid", {{"ordered_first", "off"}});
     EXPECT_EQ(on.hash, first.hash) << scene.name;
@@ -38,8 +37,8 @@ TEST_F(LucidOrder, IsOneImageForEveryFilterShuffleAndRun) {
   }
 }
 
-// Tri-half-blocks of equal depth come out of the sort in any order, so that two frames may have
-// different pixels wrong: counts are compared with what is seen in the same frame.
+// The sort may leave tri-half-blocks of equal depth in any order, so that other pixels may be wrong
+// in another frame. Therefore counters are compared with the image of the same frame.
 TEST_F(LucidOrder, WrongPixelsFallAsTheFilterGrowsAndTheRepairMendsThemAll) {
   std::vector<Scene> scenes = disorderlyScenes();
   scenes.push_back(fans());
@@ -95,11 +94,12 @@ TEST_F(LucidOrder, ShowsEveryWrongPixelInRed) {
     }
 }
 
-/// Front to back, a threshold of 1 - 1/128 leaves out what is behind it: at most 1/128.
+/// With a threshold of 1 - 1/128, blending front to back leaves out at most 1/128 of what is
+/// behind.
 constexpr const char* paperThreshold = "0.9921875";
 
-// Five layers of alpha 128/255 cover 1 - (127/255)^5 = 0.969, four 0.938: at 0.95 the sixth is not
-// seen.
+// Five layers of alpha 128/255 cover 1 - (127/255)^5 = 0.969, four 0.938: with a threshold of 0.95
+// the sixth layer is not blended.
 TEST_F(LucidOrder, AlphaThresholdStopsAtTheLayerThatReachesIt) {
   RenderFixture fixture(stack(40, 0.5f), 70, 40);
   RenderFixture five(stack(5, 0.5f), 70, 40), six(stack(6, 0.5f), 70, 40);
@@ -109,7 +109,7 @@ TEST_F(LucidOrder, AlphaThresholdStopsAtTheLayerThatReachesIt) {
   const Image whole = fixture.render("lucid").image;
   EXPECT_EQ(pixelsThatDiffer(cut, whole), 70u * 40);
   EXPECT_LE(compareImages(cut, whole).maxError, 0.05);
-  // Not reached by three layers: nothing changes.
+  // Three layers do not reach it, so nothing changes.
   RenderFixture three(stack(3, 0.5f), 70, 40);
   EXPECT_EQ(three.render("lucid", {{"alpha_threshold", "0.95"}}).hash, three.render("lucid").hash);
 }
@@ -140,8 +140,8 @@ struct View {
   std::uint32_t width = 80, height = 45;
 };
 
-/// Views that use everything that has buffers of its own: vertices behind the eye, opaque geometry,
-/// deep pixels, lists that no shared memory holds.
+/// Views that together use all buffers: vertices behind the eye, opaque geometry, deep pixels, and
+/// lists that are too long for shared memory.
 std::vector<View> viewsThatUseEveryBuffer() {
   std::vector<View> views;
   for (const Scene& scene : disorderlyScenes())
@@ -158,7 +158,7 @@ std::vector<View> viewsThatUseEveryBuffer() {
   return views;
 }
 
-// Nothing is read that the frame has not written.
+// A frame reads nothing that it has not written.
 TEST_F(LucidOrder, RubbishInItsBuffersDoesNotShow) {
   std::map<std::string, std::uint64_t> used;
   for (const auto& [scene, camera, width, height] : viewsThatUseEveryBuffer()) {

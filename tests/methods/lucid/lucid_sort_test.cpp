@@ -1,5 +1,5 @@
-// The sorts of lucid's lists, on lists of their own: that in registers too, which on devices of
-// small subgroups no frame uses.
+// The sorts of lucid's lists, on separate lists. Includes the sort in registers, which frames do
+// not use on devices with small subgroups.
 #include <numeric>
 
 #include "gpu/barrier.h"
@@ -12,7 +12,7 @@ namespace {
 
 class LucidSortGpu : public GpuTest {};
 
-/// The order in which sort_lists.comp leaves lists of these depths.
+/// The order in which sort_lists.comp leaves lists with these depths.
 std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<float>>& lists,
                                                  bool high, bool registers) {
   const Device& device = sharedDevice();
@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
   }
   std::vector<lucid::PixelJob> jobs;
   for (const auto& block : blocks) jobs.push_back({block, ~0u});
-  std::reverse(blocks.begin(), blocks.end());  // long lists lie from the end down
+  std::reverse(blocks.begin(), blocks.end());  // long lists are stored from the end downwards
   lucid::LucidCounters counters{};
   counters.lowLists = counters.highLists = counters.high.x = std::uint32_t(lists.size());
 
@@ -75,7 +75,7 @@ void expectFrontToBack(const std::vector<float>& depths, const std::vector<std::
   std::vector<std::uint32_t> all(depths.size());
   std::iota(all.begin(), all.end(), 0u);
   ASSERT_EQ(places, all);
-  // As fine as the bits that the places leave (pack_key.glsl).
+  // Depths have the bits that the places leave free (pack_key.glsl).
   const auto [low, high] = std::minmax_element(depths.begin(), depths.end());
   const float step = (*high - *low) / float(1u << 18);
   for (std::size_t i = 1; i < order.size(); ++i)
@@ -101,7 +101,7 @@ TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
       for (std::uint32_t i = 0; i < length; ++i) depths.push_back(random.uniform(0.1f, 10));
       lists.push_back(depths);
     }
-    lists.push_back(std::vector<float>(sort.most, 0.5f));  // all alike
+    lists.push_back(std::vector<float>(sort.most, 0.5f));  // all equal
     const auto orders = ordersOf(lists, sort.high, sort.registers);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       SCOPED_TRACE(fmt::format("{} of them", lists[i].size()));

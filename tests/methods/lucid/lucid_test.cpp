@@ -1,4 +1,4 @@
-// LucidRaster: right by the CPU's image, watertight, and true in what it counts.
+// LucidRaster gives the CPU renderer's image, is watertight, and has the right counters.
 #include "raster/raster_types.h"
 #include "scene/quads.h"
 #include "support/planted.h"
@@ -40,8 +40,8 @@ TEST_F(Lucid, AgreesWithTheCpuOnFiles) {
     GTEST_SKIP() << "not in ../shared/scenes: " << fmt::to_string(fmt::join(missing, ", "));
 }
 
-// Watertight: below the horizon each pixel has one layer, above it none; edges in front of and
-// behind the eye, and vertices on samples.
+// Watertight: below the horizon each pixel has one layer, above it none. There are edges in front
+// of and behind the eye, and vertices on samples.
 TEST_F(Lucid, TessellatedSheetCoversEveryPixelOnce) {
   const float once = (1.0f - 128 / 255.0f) * backgroundColor.r;
   for (const int cells : {1, 8, 37}) {
@@ -63,7 +63,7 @@ TEST_F(Lucid, TessellatedSheetCoversEveryPixelOnce) {
       const std::uint64_t covered = pixelsOf(result.image, once);
       EXPECT_EQ(result.frame.counters.at("fragments"), covered) << cells;
       EXPECT_EQ(covered + pixelsOf(result.image, backgroundColor.r), 101u * 67) << cells;
-      // What the lowest rays would meet is nearer than the near plane.
+      // The lowest rays would hit the sheet in front of the near plane.
       const double share = std::min(1.0, double(height / camera.near));
       EXPECT_NEAR(double(covered), share * 101 * 33.5, 101 * 2) << cells;
     }
@@ -77,8 +77,8 @@ TEST_F(Lucid, OpaqueFileAgreesWithTheCpu) {
   expectTruth(lucid, loadScene({path.string(), {}, 1.0f}), 160, 120);
 }
 
-/// `soup` with an opaque rectangle, its left edge at x = -reach and `front` deep, its right edge at
-/// x = reach and `back` deep (z), added behind the last triangle.
+/// `soup` with an opaque rectangle from x = -reach at z = `front` to x = reach at z = `back`. Its
+/// triangles come after all others.
 Scene withOpaqueWall(Scene soup, float reach, float front, float back) {
   const std::size_t transparent = soup.triangles.size();
   const auto first = std::uint32_t(soup.vertices.size());
@@ -95,8 +95,7 @@ Scene withOpaqueWall(Scene soup, float reach, float front, float back) {
   return soup;
 }
 
-// A wall that cuts through the triangles: half of a pixel's fragments are hidden, and which changes
-// from pixel to pixel.
+// A wall that intersects the triangles: half of the fragments are hidden, others in each pixel.
 TEST_F(Lucid, OpaqueGeometryHidesWhatIsBehindIt) {
   for (const std::uint64_t seed : {41, 42}) {
     const Scene soup = randomSoup(seed, 300);
@@ -115,7 +114,7 @@ TEST_F(Lucid, OpaqueGeometryHidesWhatIsBehindIt) {
 }
 
 TEST_F(Lucid, NothingIsSampledBehindAWall) {
-  // Near the eye and over the whole frame: the soup is behind z = 0.5.
+  // Near the eye and over the whole frame; the soup is behind z = 0.5.
   const Scene scene = withOpaqueWall(randomSoup(43, 300), 2.0f, 0.6f, 0.6f);
   RenderFixture fixture(scene, 96, 64);
   const auto result = fixture.render("lucid");
@@ -134,7 +133,8 @@ Counters countersOf(const Scene& scene, std::uint32_t width, std::uint32_t heigh
   return RenderFixture(scene, width, height).render("lucid", parameters).frame.counters;
 }
 
-// Quads are those of pairTriangles(), bins those of the frame, and samples the CPU's.
+// The counters of quads are those of pairTriangles(), the number of bins is that of the frame, and
+// the number of samples is that of the CPU renderer.
 TEST_F(Lucid, CountsWhatThePaperCounts) {
   for (const Scene& scene :
        {loadScene({"boxes", {}, 0.1f}), loadScene({"hairball", {}, 0.02f}), randomSoup(3, 200)}) {
@@ -157,8 +157,8 @@ TEST_F(Lucid, CountsWhatThePaperCounts) {
 }
 
 TEST_F(Lucid, CountsAreThoseWorkedOutByHand) {
-  // Three layers over 5 x 3 bins, that is 20 x 23 half-blocks: 3 triangles, alone in their quads,
-  // each in every bin and half-block.
+  // Three layers over 5 x 3 bins with 20 x 23 half-blocks. Each layer is one triangle without a
+  // partner and is in every bin and half-block.
   const Counters over = countersOf(stack(3, 0.5f), 160, 90);
   const Counters expected = {{"input_quads", 3},
                              {"degenerate_quads", 3},
@@ -177,14 +177,14 @@ TEST_F(Lucid, CountsAreThoseWorkedOutByHand) {
                              {"invalid_pixels", 0},
                              {"repaired_pixels", 0}};
   for (const auto& [name, value] : expected) EXPECT_EQ(over.at(name), value) << name;
-  // A bin is high from more triangles than a part has. Over five bins they are large quads: of
-  // small ones each is counted as two triangles, degenerate or not.
+  // A bin is high if it has more triangles than a part. Quads over five bins are large. A small
+  // quad is counted as two triangles, even when it is degenerate.
   for (const int count : {partTriangles, partTriangles + 1}) {
     const Counters bins = countersOf(stack(count, 0.01f), 160, 16);
     EXPECT_EQ(bins.at("bins_low"), count == partTriangles ? 5u : 0u);
     EXPECT_EQ(bins.at("bins_high"), count == partTriangles ? 0u : 5u);
   }
-  // A quad within the upper left bin of four, and another that is behind the eye.
+  // One quad inside the upper left of four bins, and another one behind the eye.
   const Scene one = triangleScene({{glm::vec3{-0.9f, 0.2f, 0}, {-0.2f, 0.2f, 0}, {-0.9f, 0.9f, 0}},
                                    {glm::vec3{-1, 0, 3}, {1, 0, 3}, {0, 1, 3}}},
                                   {{1, 1, 1, 0.5f}}, frontCamera());
@@ -203,7 +203,7 @@ TEST_F(Lucid, CullingBackFacesDropsTheQuadsThatItCounts) {
   const Counters culled = countersOf(scene, 320, 180, {{"backface_culling", "on"}});
   EXPECT_EQ(culled.at("culled_backface_quads") + culled.at("visible_quads"),
             all.at("visible_quads"));
-  // Of a closed box as many faces look away as towards the eye, more or less.
+  // About half of the faces of closed boxes are back-facing.
   EXPECT_NEAR(double(culled.at("fragments")), 0.5 * double(all.at("fragments")),
               0.1 * double(all.at("fragments")));
 }

@@ -1,5 +1,5 @@
-// LucidRaster: the worst that one can plant, against the CPU's image. The method must be right in
-// each whatever the depth filter, and however the triangles were submitted.
+// LucidRaster in its worst cases, compared with the CPU renderer's image. It must be right for
+// every depth filter and every order of submission.
 #include "lucid/lucid_types.h"
 
 #include "support/planted.h"
@@ -11,9 +11,8 @@ namespace {
 
 class LucidWorstCases : public GpuTest {};
 
-/// `edgeShare`: of the fragments (of the pixels where there are more of these), as in truth.cpp,
-/// that may differ since an edge is so close to a sample that devices may snap it to the other
-/// side.
+/// `edgeShare` is the share of fragments (of pixels, if these are more) that may differ, as in
+/// truth.cpp, because an edge is so close to a sample that a device may snap it to the other side.
 RenderFixture::Result expectRight(const Scene& scene, int width, int height,
                                   double edgeShare = 0.001) {
   SCOPED_TRACE(scene.name);
@@ -29,7 +28,7 @@ RenderFixture::Result expectRight(const Scene& scene, int width, int height,
   EXPECT_LE(double(verdict.edges), edgeShare * std::max(pixels, fragments));
   EXPECT_LE(double(verdict.orders), 0.001 * pixels);
   EXPECT_NEAR(double(ours.frame.counters.at("fragments")), fragments, edges);
-  // Doubts are the exception, or nothing was tested.
+  // Most pixels must be without doubt, or nothing was tested.
   EXPECT_LT(edges, 0.2 * pixels);
   EXPECT_LT(orders, 0.01 * pixels);
   EXPECT_EQ(fixture.render("lucid", {{"depth_filter", "1"}}).hash, ours.hash);
@@ -44,7 +43,7 @@ TEST_F(LucidWorstCases, FansThatCutThroughEachOther) {
   expectRight(fans(), 64, 64);
 }
 
-// More layers than any list in shared memory holds, all at one depth.
+// More layers, all at one depth, than a list in shared memory can have.
 TEST_F(LucidWorstCases, ThousandsOfCoplanarLayers) {
   const auto result = expectRight(layers(4000, 0, 0, 0.01f), 9, 5);
   EXPECT_EQ(result.frame.counters.at("fragments"), 4000u * 9 * 5);
@@ -52,8 +51,8 @@ TEST_F(LucidWorstCases, ThousandsOfCoplanarLayers) {
   EXPECT_EQ(result.frame.counters.at("long_lists"), 4u);
 }
 
-// About each length at which a list goes another way. A half-block whose layers all cover it has a
-// list as long as there are layers, and so many fragments a pixel.
+// Lengths around each limit at which lists are processed differently. If all layers cover a
+// half-block, its list has one entry per layer, and each pixel has one fragment per layer.
 void expectListsAboutEveryLimit(int width, int height) {
   const auto pixels = std::uint64_t(width) * std::uint64_t(height);
   std::set<std::uint32_t> lengths;
@@ -66,16 +65,16 @@ void expectListsAboutEveryLimit(int width, int height) {
     EXPECT_EQ(usual.at("fragments"), length * pixels);
     EXPECT_EQ(usual.at("half_blocks"), length);
     EXPECT_EQ(usual.at("long_lists"), length > LOW_LIST ? 1u : 0u);
-    // Unfiltered, the layers' order goes wrong, but where it is the repair's from the start.
+    // Without a filter the order is wrong, except in lists that go directly to the repair.
     RenderFixture fixture(scene, std::uint32_t(width), std::uint32_t(height));
     const auto rough = fixture.render("lucid", {{"depth_filter", "1"}});
     const std::uint64_t invalid = rough.frame.counters.at("invalid_pixels");
     const bool handedOver = length > HIGH_LIST;
     EXPECT_EQ(invalid > 0, !handedOver);
     EXPECT_EQ(rough.frame.counters.at("repaired_pixels"), handedOver ? pixels : invalid);
-    // What the repair cannot hold in shared memory, it lists.
+    // Pixels that are too deep for shared memory go to lists in the repair.
     EXPECT_EQ(rough.memory.contains("method: deep fragments"), length > REPAIR_LIST);
-    // No repair is asked for, but the pixels of a list too long to sort are blended even so.
+    // Repair is off, but pixels of lists that are too long to sort are repaired anyway.
     const auto without = fixture.render("lucid", {{"repair", "off"}}).frame.counters;
     EXPECT_EQ(without.at("repaired_pixels"), handedOver ? pixels : 0u);
     EXPECT_EQ(without.at("fragments"), length * pixels);
@@ -86,15 +85,16 @@ TEST_F(LucidWorstCases, ListsAboutEveryLimit) {
   expectListsAboutEveryLimit(4, 4);
 }
 
-// Disabled: fails on llvmpipe at 513 to 1024 layers. A repair job of 32 such pixels is more turns
-// than llvmpipe allows an invocation, it stops after 17 of them, and status() does not notice.
+// Disabled: it fails on llvmpipe at 513 to 1024 layers. A repair job of 32 such pixels needs more
+// loop iterations than llvmpipe allows per invocation. It stops after 17 pixels, and status() does
+// not notice.
 TEST_F(LucidWorstCases, ListsAboutEveryLimitInAFullHalfBlock) {
   expectListsAboutEveryLimit(8, 4);
 }
 
-/// Right triangles, two legs of `leg` pixels, between z = 0 and -1, as seen by frontCamera() on
-/// `side` x `side` pixels. Corners are odd multiples of 1/8 pixel and legs as well, so that no edge
-/// comes closer to a sample than 1/16 pixel: there is no doubt about what is covered.
+/// Right triangles with two legs of `leg` pixels between z = 0 and -1, as seen by frontCamera() on
+/// `side` x `side` pixels. Corners and legs are odd multiples of 1/8 pixel, so that every edge is
+/// at least 1/16 pixel from every sample, and coverage is without doubt.
 Scene specks(int count, int side, float leg, float alpha) {
   Pcg32 random(3);
   std::vector<std::array<glm::vec3, 3>> triangles;
@@ -118,7 +118,7 @@ TEST_F(LucidWorstCases, HundredsOfThousandsOfTrianglesInOneBin) {
   const auto counters = expectRight(scene, 24, 24).frame.counters;
   EXPECT_EQ(counters.at("bins_high"), 1u);
   EXPECT_EQ(counters.at("bin_entries"), counters.at("visible_quads"));
-  // A 16th of the places has a sample in reach.
+  // One in 16 positions covers a sample.
   EXPECT_NEAR(double(counters.at("fragments")), 300000.0 / 16, 1000);
 }
 
@@ -158,7 +158,8 @@ Scene slivers(int count) {
   return scene;
 }
 
-// Slivers thinner than a pixel have few samples but are edge all along: more of them are in doubt.
+// Slivers that are thinner than a pixel have few samples, and all of them are near an edge, so more
+// pixels are in doubt.
 TEST_F(LucidWorstCases, Slivers) {
   expectRight(slivers(2000), 128, 128, 0.005);
 }
@@ -167,8 +168,8 @@ TEST_F(LucidWorstCases, DustSmallerThanPixels) {
   Scene scene = specks(50000, 128, 0.375f, 0.3f);
   scene.name = "dust";
   const auto counters = expectRight(scene, 128, 128, 0.0).frame.counters;
-  // A 16th of the places has a sample in reach, a quarter one in the triangle's box; the rest is
-  // culled.
+  // One in 16 positions covers a sample. One in four has a sample in the triangle's bounding box;
+  // the others are culled.
   EXPECT_NEAR(double(counters.at("fragments")), 50000.0 / 16, 300);
   EXPECT_NEAR(double(counters.at("visible_quads")), 50000.0 / 4, 600);
 }

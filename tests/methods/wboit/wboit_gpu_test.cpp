@@ -1,4 +1,4 @@
-// WBOIT: exact for one layer, order-independent, and with weights that do vary with depth.
+// WBOIT is exact for one layer and independent of order, and its weights vary with depth.
 #include <gmock/gmock.h>
 
 #include "quality/compare.h"
@@ -18,7 +18,7 @@ std::map<std::string, std::string> with(const std::string& name, const std::stri
   return parameters;
 }
 
-/// A triangle across the view axis of frontCamera(), `distance` before the eye.
+/// A triangle across the view axis of frontCamera(), at `distance` from the eye.
 std::array<glm::vec3, 3> across(float distance) {
   const float z = frontCamera().eye.z - distance;
   return {glm::vec3{-distance, -distance, z}, {distance, -distance, z}, {0, distance, z}};
@@ -33,14 +33,14 @@ TEST_F(Wboit, OneLayerIsExactWhateverTheWeight) {
     EXPECT_LT(compareImages(result.image, exact.image).maxError, 1e-5) << weight;
     EXPECT_EQ(result.frame.counters.at("fragments"), exact.frame.counters.at("fragments"));
   }
-  // Half floats round colour and alpha to 11 bits, an 8-bit revealage to 8.
+  // Half floats round colour and alpha to 11 bits, an 8-bit revealage to 8 bits.
   EXPECT_LT(compareImages(fixture.render("wboit").image, exact.image).maxError, 1e-3);
   const auto coarse = fixture.render("wboit", {{"reveal_format", "r8"}});
   EXPECT_LT(compareImages(coarse.image, exact.image).maxError, 1.0 / 255);
 }
 
-/// How much more a layer at `nearest` weighs than one at `farthest`: both have the same alpha, so
-/// that their weights are as their colours in the mean.
+/// The ratio of the weights of a layer at `nearest` and one at `farthest`. Both have the same
+/// alpha, so it is the ratio of their colours in the mean.
 double weightRatio(const std::string& weight, float nearest, float farthest) {
   Camera camera = frontCamera();
   camera.near = 0.5f * nearest;
@@ -49,12 +49,13 @@ double weightRatio(const std::string& weight, float nearest, float farthest) {
   RenderFixture fixture(scene, 33, 33);
   const Image image = fixture.render("wboit", with("weight", weight)).image;
   const float* center = image.at(16, 16);
-  const double alpha = 128 / 255.0;  // as 8 bits hold it
+  const double alpha = 128 / 255.0;  // as stored in 8 bits
   const double behind = (1 - alpha) * (1 - alpha) * backgroundColor.r;
   return (center[0] - behind) / (center[2] - behind);
 }
 
-// A weight that is clamped to a constant over the depths of a scene makes the mean blind to order.
+// If a weight is clamped to a constant over the depths of a scene, the mean does not depend on
+// order.
 TEST_F(Wboit, WeightsVaryOverTheDepthsOfEveryScene) {
   for (const SceneInfo& info : sceneCatalogue()) {
     const Scene scene = loadScene({info.name, {}, 0.01f});
@@ -69,8 +70,8 @@ TEST_F(Wboit, WeightsVaryOverTheDepthsOfEveryScene) {
   }
 }
 
-// The published weights, worked out here a second time; the scene's far end is at 150, 95 and 250
-// of the paper's units (see rangeOf() in methods/wboit).
+// The published weights, implemented here a second time. The scene's farthest point is at 150, 95
+// and 250 of the paper's units (see rangeOf() in methods/wboit).
 TEST_F(Wboit, EquationsAreAsPublished) {
   auto equation7 = [](double z) {
     return std::clamp(10.0 / (1e-5 + std::pow(z / 5, 2) + std::pow(z / 200, 6)), 1e-2, 3e3);
@@ -100,7 +101,7 @@ TEST_F(Wboit, SubmissionOrderOnlyRounds) {
   }
 }
 
-// Of many layers it is an estimate; weights that tell near from far make it a better one.
+// For many layers it is an estimate, and weights that depend on depth make it better.
 TEST_F(Wboit, WeightsBringItNearerToTheExactImage) {
   RenderFixture fixture(loadScene({"boxes", {}, 1.0f}), 96, 54);
   const Image exact = fixture.render("reference").image;

@@ -32,7 +32,7 @@ double signedVolume(const Scene& scene) {
   return volume;
 }
 
-// Directed edges, by position, that no neighbour runs through the other way.
+// Directed edges, by position, without a neighbour that has the opposite edge.
 std::size_t openEdges(const Scene& scene) {
   using Point = std::tuple<float, float, float>;
   std::map<std::pair<Point, Point>, int> edges;
@@ -115,17 +115,17 @@ TEST(Generated, PlanesGrowAndFaceTheCamera) {
 
 TEST(Generated, TheTeapotHoldsWater) {
   const Scene scene = loadScene({"teapot"});
-  EXPECT_EQ(scene.triangles.size(), 32u * 16 * 16 * 2 - 8 * 16);  // less two fans of four patches
+  EXPECT_EQ(scene.triangles.size(), 32u * 16 * 16 * 2 - 8 * 16);  // minus two fans of four patches
   EXPECT_TRUE(near(scene.bounds.min, {-3, 0, -2}, 1e-3f));
   EXPECT_TRUE(near(scene.bounds.max, {3.434f, 3.15f, 2}, 1e-3f));
   expectNormalsMatchFaces(scene);
-  // Open only where the real one is: inside of the rim, edge of the lid (four patches each), both
-  // ends of handle and spout (two patches each).
+  // It is open only where the original is: inside the rim and at the edge of the lid (four patches
+  // each), and at both ends of handle and spout (two patches each).
   EXPECT_EQ(openEdges(scene), 16u * (4 + 4 + 2 * 2 + 2 * 2));
   EXPECT_GT(signedVolume(scene), 0.0);
 }
 
-// The LucidRaster paper's triangle counts; smoke's are those of the paper on backwards memory
+// The triangle counts of the LucidRaster paper; for smoke those of the paper on backwards memory
 // allocation.
 const std::map<std::string, double> kPaperTriangles = {
     {"boxes", 12000},    {"bunny", 144000},     {"conference", 331000},   {"dragon", 871000},
@@ -139,7 +139,7 @@ TEST(Generated, CountsAreThePapersAndScaleWithDetail) {
     EXPECT_NEAR(double(generatedSize(name).triangles), triangles, 0.1 * triangles);
     for (const float detail : {0.5f, 0.1f, 0.03f}) {
       SCOPED_TRACE(detail);
-      // Few triangles come in steps.
+      // With few triangles the possible counts are far apart.
       const double wanted = triangles * double(detail);
       EXPECT_NEAR(double(generatedSize(name, detail).triangles), wanted, 0.25 * wanted + 35);
     }

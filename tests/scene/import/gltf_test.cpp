@@ -44,7 +44,7 @@ class Gltf : public TemporaryFolder {
     return messageOf<InputError>([&] { loadGltf(path); });
   }
 
-  // One triangle as drawn by `node`, with a material; the usual start of a test.
+  // One triangle with a material, drawn by `node`: the start of most tests.
   Scene loadTriangle(const json& material, json node = json::object()) {
     GlbBuilder glb;
     glb.json["materials"] = {material};
@@ -448,8 +448,8 @@ TEST_F(Gltf, DeepNodesDoNotExhaustTheStack) {
   EXPECT_EQ(load(glb).triangles.size(), 1u);
 }
 
-// Every cut and a thousand random changes of a small file with a bit of everything: each loads or
-// is refused with one line; none crashes (run it under the sanitizers).
+// A small file that uses every feature, cut at every length and with a thousand random changes.
+// Each file is loaded or rejected with one line, and none crashes (run this under the sanitizers).
 TEST_F(Gltf, DamageNeverCrashes) {
   GlbBuilder glb;
   const std::string image = png(2, 2, std::vector<std::uint8_t>(16, 99));

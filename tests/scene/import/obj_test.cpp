@@ -29,7 +29,7 @@ class Obj : public TemporaryFolder {
   void write(const char* name, const std::string& text) {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  // A 2x1 grey picture, in the simplest format that stb_image reads.
+  // A grey image of 2x1 pixels in the simplest format of stb_image.
   void picture(const char* name, unsigned char left, unsigned char right) {
     write(name, std::string("P5\n2 1\n255\n") + char(left) + char(right));
   }

@@ -1,4 +1,4 @@
-// The smallest method there is: what methods/README.md describes, and no more. A test adds it.
+// The smallest possible method, as methods/README.md describes it. A test adds it to the program.
 #include "frame/sample_counter.h"
 #include "method/method.h"
 #include "sum_of_layers/sum_types.h"

@@ -1,4 +1,4 @@
-// C++ and GLSL both include this.
+// C++ and GLSL both include this file.
 #ifndef OITLAB_SUM_OF_LAYERS_TYPES_H
 #define OITLAB_SUM_OF_LAYERS_TYPES_H
 
