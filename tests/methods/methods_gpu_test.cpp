@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "gpu/pipeline_cache.h"
 #include "quality/compare.h"
 
 namespace oitlab::testing {

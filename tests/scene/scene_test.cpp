@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/environment.h"
 #include "support/glb.h"
 #include "support/temporary_folder.h"
 #include "util/error.h"
@@ -108,24 +109,19 @@ class NamedViews : public TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     std::filesystem::create_directories(folder_ / "experiments");
-    if (const char* before = std::getenv("OITLAB_ROOT")) before_ = before;
-    ::setenv("OITLAB_ROOT", folder_.c_str(), 1);
+    root_.emplace("OITLAB_ROOT", folder_.string());
     GlbBuilder glb;
     glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions({0, 0, 0, 1, 0, 0, 0, 1, 0})}})}});
     path_ = glb.write(folder_ / "x.glb");
   }
   void TearDown() override {
-    // A bundle's launcher sets this variable, and the tests after this one need it.
-    if (before_)
-      ::setenv("OITLAB_ROOT", before_->c_str(), 1);
-    else
-      ::unsetenv("OITLAB_ROOT");
+    root_.reset();  // a bundle's launcher sets it, and the tests after this one need that value
     TemporaryFolder::TearDown();
   }
   void toml(const char* name, const char* text) { std::ofstream(folder_ / name) << text; }
 
   std::string path_;
-  std::optional<std::string> before_;  ///< the value of OITLAB_ROOT
+  std::optional<ScopedEnvironment> root_;
 };
 
 TEST_F(NamedViews, NoFileIsNoError) {

@@ -1,29 +1,11 @@
-// The A-buffer is exact with every sort, mask and memory setting, and counts what it may lose.
+// The A-buffer is exact with every sort, mask and memory setting.
 #include <gmock/gmock.h>
 
-#include "abuffer/options.h"
 #include "quality/compare.h"
-#include "support/gpu.h"
-#include "util/error.h"
+#include "support/columns.h"
 
 namespace oitlab::testing {
 namespace {
-
-using Settings = std::map<std::string, std::string>;
-using ::testing::HasSubstr;
-
-class Abuffer : public GpuTest {};
-
-const std::vector<std::string> sorts = {"auto",  "insertion", "merge",
-                                        "shell", "bitonic",   "register"};
-const std::vector<std::string> masks = {"stencil", "lists", "stencil_increment"};
-const std::vector<std::string> memories = {"bma", "max", "max_by_interval"};
-
-std::string nameOf(const Settings& settings) {
-  std::string text;
-  for (const auto& [name, value] : settings) text += name + "=" + value + " ";
-  return text;
-}
 
 /// Expects no differing pixel, in a frame as it is timed and in one with separated stages, and the
 /// right number of fragments.
@@ -42,34 +24,6 @@ void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
   for (const char* counter : {"fragments", "max_fragments_per_pixel", "covered_pixels"})
     EXPECT_EQ(frame.counters.at(counter), exact.frame.counters.at(counter)) << counter;
   EXPECT_EQ(frame.counters.at("blended_fragments"), exact.frame.counters.at("fragments"));
-}
-
-/// One column of pixels for each of `depths`, with that number of layers in a pseudo-random order.
-/// Every fourth layer has the depth of the one before it, and each has its own colour. In the view
-/// a pixel is one unit, and the view is `rows` high.
-Scene columns(const std::vector<int>& depths, int rows) {
-  std::vector<std::array<glm::vec3, 3>> triangles;
-  std::vector<glm::vec4> colors;
-  const float half = 0.5f * float(depths.size());
-  for (std::size_t column = 0; column < depths.size(); ++column)
-    for (int layer = 0; layer < depths[column]; ++layer) {
-      const int place = (layer * 7919) % depths[column];  // a permutation: 7919 is prime
-      // The depths are so close that perspective does not move a column into the next.
-      const float z = -1e-5f * float(place % 4 == 3 ? place - 1 : place);
-      const float left = 2.0f * (float(column) - half) / float(rows);
-      const float right = left + 2.0f / float(rows), high = 2.0f, low = -2.0f;
-      triangles.push_back({glm::vec3{left, low, z}, {right, low, z}, {right, high, z}});
-      triangles.push_back({glm::vec3{left, low, z}, {right, high, z}, {left, high, z}});
-      const glm::vec4 color{float(layer % 7) / 6, float(layer % 11) / 10, float(layer % 13) / 12,
-                            0.02f + 0.02f * float(layer % 5)};
-      colors.push_back(color);
-      colors.push_back(color);
-    }
-  return triangleScene(triangles, colors, frontCamera());
-}
-
-RenderFixture columnFixture(const std::vector<int>& depths, int rows = 2) {
-  return RenderFixture(columns(depths, rows), std::uint32_t(depths.size()), std::uint32_t(rows));
 }
 
 const std::vector<int> aroundEveryBound = {1,   2,   7,   8,   9,   15,  16,  17,
@@ -254,160 +208,6 @@ TEST_F(Abuffer, ColoursAreHeldAsAskedFor) {
       EXPECT_LT(found, error) << color;
     }
   }
-}
-
-TEST_F(Abuffer, GrowsAndLosesNothing) {
-  RenderFixture fixture = columnFixture({30, 40, 50}, 8);
-  const auto roomy = fixture.render("abuffer", {{"initial_depth", "64"}});
-  const auto tight = fixture.render("abuffer", {{"initial_depth", "0"}});
-  EXPECT_EQ(roomy.frame.recordings, 1);
-  EXPECT_EQ(tight.frame.recordings, 2);
-  EXPECT_EQ(tight.hash, roomy.hash);
-  EXPECT_EQ(tight.frame.counters, roomy.frame.counters);
-}
-
-TEST_F(Abuffer, DropsWhatMemoryDoesNotHoldAndCountsIt) {
-  constexpr unsigned pixels = 3 * 8, fragments = 8 * (30 + 40 + 50);
-  RenderFixture fixture = columnFixture({30, 40, 50}, 8);
-  for (const std::string& mask : masks)
-    for (const std::string& memory : memories) {
-      const Settings settings = {{"on_overflow", "drop"},
-                                 {"initial_depth", "10"},
-                                 {"mask", mask},
-                                 {"sort_memory", memory},
-                                 {"max_fragments", "16"}};
-      const auto result = fixture.render("abuffer", settings);
-      EXPECT_EQ(result.frame.counters.at("fragments"), fragments);
-      EXPECT_EQ(result.frame.counters.at("blended_fragments"), 10 * pixels + 1) << nameOf(settings);
-      EXPECT_EQ(result.frame.counters.at("lost_fragments"), fragments - 10 * pixels - 1);
-    }
-}
-
-TEST_F(Abuffer, TruncatesAsThePaperDoesAndCountsIt) {
-  RenderFixture fixture = columnFixture({10, 16, 17, 40, 300}, 2);
-  for (const std::string& mask : masks)
-    for (const std::string& memory : memories)
-      for (const char* sort : {"auto", "register"}) {
-        const Settings settings = {{"deep", "truncate"},
-                                   {"max_fragments", "16"},
-                                   {"mask", mask},
-                                   {"sort_memory", memory},
-                                   {"sort", sort}};
-        const auto counters = fixture.render("abuffer", settings).frame.counters;
-        EXPECT_EQ(counters.at("truncated_pixels"), 2u * 3) << nameOf(settings);
-        EXPECT_EQ(counters.at("truncated_fragments"), 2u * (1 + 24 + 284)) << nameOf(settings);
-        EXPECT_EQ(counters.at("blended_fragments"), 2u * (10 + 4 * 16)) << nameOf(settings);
-      }
-}
-
-TEST_F(Abuffer, EachIntervalIsAStage) {
-  RenderFixture fixture = columnFixture({10, 40});
-  const auto stagesOf = [&](const Settings& settings) {
-    std::vector<std::string> sortsRun;
-    for (const auto& [name, ms] : fixture.render("abuffer", settings).frame.stageMs)
-      if (name.rfind("sort", 0) == 0) sortsRun.push_back(name);
-    return sortsRun;
-  };
-  using ::testing::ElementsAre;
-  EXPECT_THAT(stagesOf({{"max_fragments", "32"}}), ElementsAre("sort 8", "sort 16", "sort 32"));
-  EXPECT_THAT(stagesOf({{"sort_memory", "max_by_interval"}, {"max_fragments", "20"}}),
-              ElementsAre("sort 8", "sort 16", "sort 20"));
-  EXPECT_THAT(stagesOf({{"sort_memory", "max"}}), ElementsAre("sort"));
-}
-
-TEST_F(Abuffer, OnlyTheMaskInUseTakesMemory) {
-  RenderFixture fixture(randomSoup(1, 8), 64, 32);
-  const MethodInfo& info = findMethod("abuffer");
-  const auto buffersOf = [&](const Settings& settings) {
-    const auto method =
-        fixture.renderer().make(info, Parameters(info.parameters, settings, info.name));
-    return method->memory().byName();
-  };
-  const auto bma = buffersOf({{"initial_depth", "2"}});
-  EXPECT_EQ(bma.at("fragment nodes"), (2u * 64 * 32 + 1) * 28);
-  EXPECT_EQ(bma.at("fragment counts"), 64u * 32 * 4);
-  EXPECT_GE(bma.at("stencil"), 64u * 32);
-  EXPECT_EQ(buffersOf({{"mask", "lists"}}).at("pixel lists"), 64u * 32 * 4);
-  EXPECT_EQ(buffersOf({{"mask", "stencil_increment"}}).count("fragment counts"), 0u);
-  const auto max = buffersOf({{"sort_memory", "max"}});
-  EXPECT_EQ(max.count("fragment counts"), 0u);
-  EXPECT_EQ(max.count("stencil"), 0u);
-  EXPECT_EQ(buffersOf({{"node_color", "rgba8"}, {"initial_depth", "0"}}).at("fragment nodes"), 16u);
-}
-
-/// A camera that sees nothing.
-Camera away() {
-  Camera camera = frontCamera();
-  camera.eye = {0, 0, 5};
-  camera.target = {0, 0, 6};
-  return camera;
-}
-
-// The experiment of figure 3 draws nothing, for every length of its array up to the 8 KiB of the
-// experiment.
-TEST_F(Abuffer, LocalMemoryLeavesTheImageAsItWas) {
-  RenderFixture fixture(randomSoup(1, 8), 33, 9);
-  const std::string background = fixture.render("reference", {}, away()).hash;
-  for (const char* size : {"1", "64", "512"}) {
-    const auto result = fixture.render("local_memory", {{"size", size}, {"passes", "3"}}, away());
-    EXPECT_EQ(result.hash, background) << size;
-    EXPECT_EQ(result.frame.stageMs.back().first, "fill");
-  }
-}
-
-// Drivers may refuse longer arrays: NVIDIA's 580.159.04 does so at 16 KiB per invocation, with an
-// error that names no shader. Then the program says which shader it was and what to change.
-TEST_F(Abuffer, MuchLocalMemoryWorksOrIsRefusedWithAReason) {
-  RenderFixture fixture(randomSoup(1, 8), 33, 9);
-  const std::string background = fixture.render("reference", {}, away()).hash;
-  const std::string exact = fixture.render("reference").hash;
-  std::vector<std::string> refusals;
-  const auto refusedOr = [&](const std::string& hash, const std::string& method,
-                             const Settings& settings, const Camera& camera,
-                             std::vector<std::string> said) {
-    try {
-      EXPECT_EQ(fixture.render(method, settings, camera).hash, hash) << nameOf(settings);
-    } catch (const DeviceError& error) {
-      for (const std::string& part : said) EXPECT_THAT(error.what(), HasSubstr(part));
-      refusals.emplace_back(error.what());
-    }
-  };
-  refusedOr(background, "local_memory", {{"size", "1024"}, {"passes", "3"}}, away(),
-            {"local_memory.frag", "SIZE=1024", "16384 bytes", "lower 'size'"});
-  // There is one pipeline per interval of lengths, and the refused one need not be the longest.
-  refusedOr(exact, "abuffer", {{"local", "fragments"}, {"max_fragments", "1024"}},
-            fixture.defaultView(),
-            {"abuffer/resolve.frag", "MAX_FRAGMENTS=", " bytes of local memory",
-             "lower 'max_fragments' (now 1024)", "local=keys"});
-  if (!refusals.empty() && !HasFailure())
-    GTEST_SKIP() << fmt::format("{}", fmt::join(refusals, "\n"));
-}
-
-TEST(AbufferOptions, TellHowMuchLocalMemoryAnInvocationTakes) {
-  const auto bytesOf = [](const Settings& settings) {
-    const auto declared = abuffer::declareParameters();
-    const abuffer::Options options(Parameters(declared, settings, "abuffer"), DeviceInfo{},
-                                   "rgba32f");
-    return options.intervals.back().localBytes;
-  };
-  EXPECT_EQ(bytesOf({{"sort", "insertion"}, {"max_fragments", "64"}}), 64u * 8);
-  EXPECT_EQ(bytesOf({{"sort", "merge"}, {"max_fragments", "64"}}), (64u + 32) * 8);
-  EXPECT_EQ(bytesOf({{"sort", "bitonic"}, {"max_fragments", "100"}}), 128u * 8);
-  EXPECT_EQ(bytesOf({{"sort", "register"}, {"max_fragments", "512"}}), 16u * 8);
-  EXPECT_EQ(bytesOf({{"max_fragments", "8"}}), 8u * 8);
-  EXPECT_EQ(bytesOf({{"max_fragments", "8"}, {"sort_memory", "max"}}), 8u * 8);
-  EXPECT_EQ(bytesOf({{"sort_memory", "max"}}), (512u + 256) * 8);
-  EXPECT_EQ(bytesOf({{"local", "fragments"}}), (512u + 256) * 24);
-  EXPECT_EQ(bytesOf({{"local", "fragments"}, {"node_color", "rgba8"}}), (512u + 256) * 12);
-}
-
-TEST(PipelineRefusal, NamesShadersDefinesCauseAndRemedy) {
-  EXPECT_EQ(pipelineRefusal("GPU", {"a.vert", "b.frag"}, {{"N", "9"}, {"SORT", "1"}}, {},
-                            "ErrorUnknown", "lower 'n'"),
-            "GPU makes no pipeline of shaders/a.vert and shaders/b.frag (N=9, SORT=1): "
-            "ErrorUnknown; lower 'n'");
-  EXPECT_EQ(pipelineRefusal("GPU", {"c.comp"}, {}, {7, 8}, "ErrorUnknown", ""),
-            "GPU makes no pipeline of shaders/c.comp (constant 0=7, constant 1=8): ErrorUnknown");
 }
 
 }  // namespace
