@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "experiment/describe.h"
+#include "util/json_file.h"
 
 namespace oitlab {
 namespace {
@@ -31,7 +32,7 @@ int compare(const CompareOptions& options) {
     nlohmann::json result = describeComparison(c);
     result["pixels_off_count"] = c.pixelsOffCount;
     result["size"] = {image.width, image.height};
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", jsonText(result));
     return exitDone;
   }
   fmt::print(stderr, "RMSE        {:.6g}\n", c.rmse);

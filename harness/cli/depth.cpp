@@ -18,6 +18,7 @@ struct DepthOptions {
   std::string view = "default";
   std::optional<float> opacity;
   float detail = 1.0f;
+  bool allowOutside = false;
   std::string out, histogram;
   float heatScale = 0.0f;
   bool json = false;
@@ -79,7 +80,8 @@ int depth(const DepthOptions& options) {
     fail<InputError>("--histogram {}: wanted a .png file", options.histogram);
   if (!options.histogram.empty()) checkImagePath(options.histogram);
 
-  const Scene scene = loadScene({options.scene, options.opacity, options.detail});
+  const Scene scene =
+      loadScene({options.scene, options.opacity, options.detail, options.allowOutside});
   const Camera camera = findView(scene, options.view);
   const Device device(options.device);
   const Target target(device, size->first, size->second, TargetFormat::rgba16f);
@@ -106,7 +108,7 @@ int depth(const DepthOptions& options) {
   if (!options.histogram.empty())
     histogram = writeDepthHistogram(options.histogram, counted, result).string();
   if (options.json) {
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", jsonText(result));
     return exitDone;
   }
   fmt::print(stderr, "{} at {}x{}\n", scene.name, size->first, size->second);
@@ -147,6 +149,8 @@ void addDepth(CLI::App& program, Action& action) {
   verb->add_option("--histogram", options->histogram,
                    "Pixels by number of fragments, log scale (.png; a .txt without Python)")
       ->type_name("FILE");
+  verb->add_flag("--allow-outside", options->allowOutside,
+                 "Let a scene file name files outside its folder");
   verb->add_flag("--json", options->json, "One JSON object on stdout, with the histogram");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return depth(*options); }; });

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "experiment/describe.h"
 #include "method/method.h"
+#include "util/json_file.h"
 
 namespace oitlab {
 namespace {
@@ -24,7 +25,7 @@ int info(const InfoOptions& options) {
     list.push_back(entry);
   }
   if (options.json) {
-    fmt::print("{}\n", nlohmann::json{{"devices", list}}.dump(2));
+    fmt::print("{}\n", jsonText(nlohmann::json{{"devices", list}}));
     return devices.empty() ? exitNoDevice : exitDone;
   }
   for (std::size_t i = 0; i < devices.size(); ++i) {

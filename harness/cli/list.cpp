@@ -3,6 +3,7 @@
 #include "method/method.h"
 #include "scene/scene.h"
 #include "util/error.h"
+#include "util/json_file.h"
 #include "util/suggest.h"
 
 namespace oitlab {
@@ -24,7 +25,7 @@ int listMethods(bool asJson) {
       fmt::print("  --set {}={}   {} {}\n      {}\n", p.name, toString(p.defaultValue),
                  p.typeName(), p.rangeText(), p.help);
   }
-  if (asJson) fmt::print("{}\n", nlohmann::json{{"methods", list}}.dump(2));
+  if (asJson) fmt::print("{}\n", jsonText(nlohmann::json{{"methods", list}}));
   return exitDone;
 }
 
@@ -47,7 +48,7 @@ int listScenes(bool asJson) {
       fmt::print("{:<12} {:>9} triangles   {}\n", info.name, size.triangles, info.summary);
   }
   if (asJson)
-    fmt::print("{}\n", nlohmann::json{{"scenes", list}}.dump(2));
+    fmt::print("{}\n", jsonText(nlohmann::json{{"scenes", list}}));
   else
     fmt::print("and any .glb, .gltf or .obj file, by its path\n");
   return exitDone;

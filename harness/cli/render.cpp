@@ -4,6 +4,7 @@
 #include "image/hash.h"
 #include "measure/statistics.h"
 #include "util/error.h"
+#include "util/json_file.h"
 #include "util/size.h"
 
 namespace oitlab {
@@ -16,6 +17,7 @@ struct RenderOptions {
   std::string view = "default";
   std::optional<float> opacity;
   float detail = 1.0f;
+  bool allowOutside = false;
   std::string format = "rgba16f";
   std::optional<std::uint64_t> shuffle;
   std::string out;
@@ -61,7 +63,8 @@ int render(const RenderOptions& options) {
     out = fmt::format("{}-{}.png", std::filesystem::path(options.scene).stem().string(), info.name);
   if (!out.empty()) checkImagePath(out);
 
-  const Scene scene = loadScene({options.scene, options.opacity, options.detail});
+  const Scene scene =
+      loadScene({options.scene, options.opacity, options.detail, options.allowOutside});
   const Camera camera = findView(scene, options.view);
   for (const Repair& repair : scene.repairs)
     fmt::print(stderr, "{}: {} {}\n", options.scene, repair.count, repair.what);
@@ -99,7 +102,7 @@ int render(const RenderOptions& options) {
       {"provenance", describeProvenance(device, info.name)},
   };
   if (options.json) {
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", jsonText(result));
     return exitDone;
   }
   fmt::print(stderr, "{} with {} at {}x{} on {}\n", scene.name, info.name, size->first,
@@ -147,6 +150,8 @@ void addRender(CLI::App& program, Action& action) {
   verb->add_option(
       "--out", options->out,
       "Image file, .exr (linear) or .png (default: SCENE-METHOD.png, or none with --json)");
+  verb->add_flag("--allow-outside", options->allowOutside,
+                 "Let a scene file name files outside its folder");
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return render(*options); }; });

@@ -3,6 +3,7 @@
 #include "scene/coverage.h"
 #include "scene/quads.h"
 #include "util/error.h"
+#include "util/json_file.h"
 #include "util/size.h"
 
 namespace oitlab {
@@ -14,6 +15,7 @@ struct SceneOptions {
   std::string size = "2560x1330";
   std::optional<float> opacity;
   float detail = 1.0f;
+  bool allowOutside = false;
   bool json = false;
 };
 
@@ -24,7 +26,8 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 int describeScene(const SceneOptions& options) {
   const auto size = parseSize(options.size);
   if (!size) fail<InputError>("--size {}: wanted WxH, such as 1280x720", options.size);
-  const Scene scene = loadScene({options.scene, options.opacity, options.detail});
+  const Scene scene =
+      loadScene({options.scene, options.opacity, options.detail, options.allowOutside});
   const Camera camera = findView(scene, options.view);
   const auto [width, height] = *size;
   const Coverage coverage = measureCoverage(scene, camera, int(width), int(height));
@@ -59,7 +62,7 @@ int describeScene(const SceneOptions& options) {
       {"visible_percent", percent(coverage.visible, triangles)},
       {"visible_front_percent", percent(coverage.visibleFront, triangles)}};
   if (options.json) {
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", jsonText(result));
     return exitDone;
   }
   for (const Repair& repair : scene.repairs)
@@ -86,6 +89,8 @@ void addScene(CLI::App& program, Action& action) {
   verb->add_option("--size", options->size, "WxH in pixels")->capture_default_str();
   verb->add_option("--opacity", options->opacity, "Opacity for all materials, in (0, 1]");
   verb->add_option("--detail", options->detail, "Share of a generated scene's triangles, (0, 1]");
+  verb->add_flag("--allow-outside", options->allowOutside,
+                 "Let a scene file name files outside its folder");
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] { action = [=] { return describeScene(*options); }; });
 }

@@ -40,6 +40,18 @@ constexpr const char* printfPreamble = R"(
 #define SHADER_PRINTF 1
 )";
 
+/// Without an exception for names that no file system can have.
+bool isFile(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(path, none);
+}
+
+std::filesystem::path absoluteNormal(const std::filesystem::path& path) {
+  std::error_code none;
+  const auto absolute = std::filesystem::absolute(path, none);
+  return (none ? path : absolute).lexically_normal();
+}
+
 /// Resolves #include "x" against the folder of the including file, then against shaders/.
 class Includer : public glslang::TShader::Includer {
  public:
@@ -48,10 +60,10 @@ class Includer : public glslang::TShader::Includer {
   IncludeResult* includeLocal(const char* name, const char* includer, std::size_t) override {
     for (const auto& folder : {(root_ / includer).parent_path(), root_}) {
       const auto path = folder / name;
-      if (!std::filesystem::exists(path)) continue;
+      if (!isFile(path)) continue;
       auto* text = new std::string(readTextFile(path));
-      return new IncludeResult(std::filesystem::relative(path, root_).generic_string(),
-                               text->data(), text->size(), text);
+      return new IncludeResult(path.lexically_relative(root_).generic_string(), text->data(),
+                               text->size(), text);
     }
     return nullptr;
   }
@@ -79,7 +91,7 @@ EShLanguage stageOf(const std::string& path) {
 /// The text of `path` and of everything it includes, in order of first appearance.
 void collect(const std::filesystem::path& root, const std::filesystem::path& path,
              std::set<std::string>& seen, std::string& text) {
-  if (!seen.insert(std::filesystem::weakly_canonical(path).string()).second) return;
+  if (!seen.insert(path.lexically_normal().string()).second) return;
   const std::string content = readTextFile(path);
   text += content;
   std::istringstream lines(content);
@@ -88,7 +100,7 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
     if (line.rfind("#include", 0) != 0 || open == std::string::npos) continue;
     const std::string name = line.substr(open + 1, line.find('"', open + 1) - open - 1);
     for (const auto& folder : {path.parent_path(), root})
-      if (std::filesystem::exists(folder / name)) {
+      if (isFile(folder / name)) {
         collect(root, folder / name, seen, text);
         break;
       }
@@ -98,10 +110,11 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
 }  // namespace
 
 ShaderLibrary::ShaderLibrary(bool shaderPrintf)
-    : root_(std::filesystem::weakly_canonical(dataRoot() / "shaders")),
+    : root_(absoluteNormal(dataRoot() / "shaders")),
       cache_(cacheRoot() / "spirv"),
       preamble_(shaderPrintf ? std::string(preamble) + printfPreamble : preamble) {
-  if (!std::filesystem::exists(root_))
+  std::error_code none;
+  if (!std::filesystem::is_directory(root_, none))
     fail<InputError>("{}: no such folder; set OITLAB_ROOT to the folder that holds shaders/",
                      root_.string());
 }

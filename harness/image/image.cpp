@@ -38,13 +38,15 @@ void checkImageSize(std::int64_t width, std::int64_t height, const std::string& 
 void checkImagePath(const std::filesystem::path& path) {
   formatOf(path);
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder))
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
     fail<InputError>("{}: there is no folder {} to write it to", path.string(), folder.string());
 }
 
 Image readImage(const std::filesystem::path& path) {
   // The extension is checked first, before a large file is read.
   const Format format = formatOf(path);
+  checkRegularFile(path);
   const std::string bytes = readTextFile(path);
   return format == Format::png ? decodePng(bytes, path.string()) : decodeExr(bytes, path.string());
 }

@@ -10,6 +10,7 @@
 #include "scene/views.h"
 #include "util/error.h"
 #include "util/suggest.h"
+#include "util/text_file.h"
 
 namespace oitlab {
 namespace {
@@ -47,7 +48,8 @@ Scene loadFile(const SceneSpec& spec) {
   if (spec.detail != 1.0f)
     fail<InputError>("{}: detail is {}, but only generated scenes have that knob", spec.source,
                      spec.detail);
-  return gltf ? loadGltf(path) : loadObj(path);
+  checkRegularFile(path);
+  return gltf ? loadGltf(path, spec.allowOutside) : loadObj(path, spec.allowOutside);
 }
 
 }  // namespace

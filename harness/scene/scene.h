@@ -79,6 +79,7 @@ struct SceneSpec {
   std::string source;            ///< "boxes", "../shared/scenes/sponza.glb"
   std::optional<float> opacity;  ///< in (0, 1]: see overrideOpacity()
   float detail = 1.0f;           ///< generated scenes: (0, 1], share of the full triangle count
+  bool allowOutside = false;     ///< the file may name files outside its folder
   bool operator==(const SceneSpec&) const = default;
 };
 

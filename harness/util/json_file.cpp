@@ -19,11 +19,13 @@ std::string_view reasonOf(std::string_view message) {
 
 }  // namespace
 
+std::string jsonText(const nlohmann::json& value, int indent) {
+  return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 void writeJsonFile(const std::filesystem::path& path, const nlohmann::json& value) {
-  constexpr int kIndent = 1;
-  const std::string text =
-      value.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace);
-  writeFileAtomically(path, text + '\n');
+  constexpr int indent = 1;  // results are many and small
+  writeFileAtomically(path, jsonText(value, indent) + '\n');
 }
 
 nlohmann::json readJsonFile(const std::filesystem::path& path) {

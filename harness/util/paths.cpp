@@ -16,7 +16,7 @@ std::filesystem::path dataRoot() {
   }
   if (fs::path source = OITLAB_SOURCE_DIR; fs::is_directory(source, ignored)) return source;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  return ignored ? fs::current_path() : program.parent_path();
+  return ignored ? fs::path(".") : program.parent_path();
 }
 
 std::filesystem::path cacheRoot() {

@@ -49,6 +49,14 @@ std::string readTextFile(const std::filesystem::path& path) {
   return bytes;
 }
 
+void checkRegularFile(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::is_regular_file(status)) return;
+  if (error) fail<InputError>("{}: cannot be opened: {}", path.string(), error.message());
+  fail<InputError>("{}: is not a regular file", path.string());
+}
+
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
   const std::filesystem::path temporary = temporaryBeside(path);
   const bool done =

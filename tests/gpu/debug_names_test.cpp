@@ -25,10 +25,13 @@ TEST_F(DebugNames, AMessageOfTheLayerHasTheNameOfTheLedger) {
   EXPECT_TRUE(device.showsNames());
   MemoryLedger ledger;
   const Buffer buffer(device, ledger, "a buffer of the test", 64);
-  device.runOnce([&](const Commands& commands) {
+  const Commands commands = device.makeCommandBuffer();  // not submitted
+  commands.begin(vk::CommandBufferBeginInfo());
+  {
     const DebugLabel label(device, commands, "a stage of the test");
-    commands.fillBuffer(buffer.vk(), 2, 4, 0);  // the offset is not a multiple of 4
-  });
+    commands.copyBuffer(buffer.vk(), buffer.vk(), vk::BufferCopy(0, 1 << 20, 4));  // beyond its end
+  }
+  commands.end();
   ::testing::internal::GetCapturedStderr();
   EXPECT_THAT(device.validationMessages(), Contains(HasSubstr("a buffer of the test")));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <fstream>
 #include <set>
 
@@ -9,11 +10,13 @@
 
 #include "scene/import/gltf_parts.h"
 #include "util/error.h"
+#include "util/text_file.h"
 
 namespace oitlab {
 namespace {
 
 std::vector<unsigned char> readBytes(const std::filesystem::path& path) {
+  checkRegularFile(path);
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   if (!stream) fail<InputError>("{}: cannot be opened for reading", path.string());
   const auto size = stream.tellg();
@@ -39,24 +42,82 @@ std::string firstLine(std::string text) {
   return text.empty() ? "not a glTF 2.0 file" : text;
 }
 
-void parse(const std::filesystem::path& path, GltfFile& file) {
+/// How tinygltf reads the files that a glTF file names. An exception must not pass through
+/// tinygltf's functions as another one, so the first is kept.
+struct FileReader {
+  SceneFolder& folder;
+  std::exception_ptr refusal;
+
+  std::filesystem::path find(const std::string& name) {
+    try {
+      return folder.find(name);
+    } catch (const InputError&) {
+      if (!refusal) refusal = std::current_exception();
+      return {};
+    }
+  }
+  bool read(const std::string& name, std::vector<unsigned char>* bytes, std::string* error) {
+    try {
+      *bytes = readBytes(find(name));
+      return true;
+    } catch (const InputError& unreadable) {
+      *error = unreadable.what();
+      return false;
+    }
+  }
+};
+
+/// Sets what tinygltf's newer versions ask for before they read a file; older ones lack the field.
+template <typename Callbacks>
+void setFileSize(Callbacks& callbacks) {
+  if constexpr (requires { callbacks.GetFileSizeInBytes; })
+    callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string& name,
+                                      void* reader) {
+      std::error_code missing;
+      const auto path = static_cast<FileReader*>(reader)->find(name);
+      *size = std::size_t(std::filesystem::file_size(path, missing));
+      return !missing;
+    };
+}
+
+tinygltf::FsCallbacks callbacksOf(FileReader& reader) {
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = [](const std::string& name, void* to) {
+    return !static_cast<FileReader*>(to)->find(name).empty();
+  };
+  callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error,
+                               const std::string& name, void* to) {
+    return static_cast<FileReader*>(to)->read(name, bytes, error);
+  };
+  callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                                void*) { return false; };
+  setFileSize(callbacks);
+  callbacks.user_data = &reader;
+  return callbacks;
+}
+
+void parse(const std::filesystem::path& path, SceneFolder& folder, GltfFile& file) {
   const std::vector<unsigned char> bytes = readBytes(path);
   const bool binary = bytes.size() >= 4 && std::equal(bytes.begin(), bytes.begin() + 4, "glTF");
   tinygltf::TinyGLTF reader;
   reader.SetImageLoader(keepEncoded, nullptr);
+  FileReader files{folder, nullptr};
+  reader.SetFsCallbacks(callbacksOf(files));
   std::string error, ignored;
-  const std::string folder = path.parent_path().string();
+  const std::string base;  // empty: names come to the callbacks as they are in the file
   const auto size = static_cast<unsigned>(bytes.size());
   bool good = false;
   try {
     good =
         binary
-            ? reader.LoadBinaryFromMemory(&file.model, &error, &ignored, bytes.data(), size, folder)
+            ? reader.LoadBinaryFromMemory(&file.model, &error, &ignored, bytes.data(), size, base)
             : reader.LoadASCIIFromString(&file.model, &error, &ignored,
-                                         reinterpret_cast<const char*>(bytes.data()), size, folder);
+                                         reinterpret_cast<const char*>(bytes.data()), size, base);
   } catch (const std::exception& exception) {  // faults that tinygltf's own checks miss
     error = exception.what();
   }
+  if (files.refusal) std::rethrow_exception(files.refusal);
   if (!good) fail<InputError>("{}: {}", file.path, firstLine(error));
 
   for (const std::string& name : file.model.extensionsRequired)
@@ -175,9 +236,15 @@ void addNodes(const GltfFile& file, const std::vector<GltfMaterial>& materials, 
 
 }  // namespace
 
-Scene loadGltf(const std::filesystem::path& path) {
+void findGltfFiles(const std::filesystem::path& path, SceneFolder& folder) {
   GltfFile file{.path = path.string()};
-  parse(path, file);
+  parse(path, folder, file);
+}
+
+Scene loadGltf(const std::filesystem::path& path, bool allowOutside) {
+  GltfFile file{.path = path.string()};
+  SceneFolder folder(path, allowOutside);
+  parse(path, folder, file);
   Scene scene;
   scene.name = path.stem().string();
   const std::vector<GltfMaterial> materials = readGltfMaterials(file, scene);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "scene/import/scene_folder.h"
 #include "scene/scene.h"
 
 namespace oitlab {
@@ -15,6 +16,13 @@ namespace oitlab {
 /// KHR_materials_transmission becomes opacity: baseColor.a is multiplied by 1 - transmissionFactor.
 /// Thus a clear pane is invisible, unless there is an opacity override. The material becomes BLEND.
 /// A MASK material keeps its cut-out: its cutoff is scaled by the same factor.
-Scene loadGltf(const std::filesystem::path& path);
+///
+/// Buffers and images are read from regular files in the folder of `path`, and with `allowOutside`
+/// from others too; a file that names another one is refused (SceneFolder).
+Scene loadGltf(const std::filesystem::path& path, bool allowOutside = false);
+
+/// Asks `folder` for every file that the glTF file `path` names, without decoding images. Throws
+/// InputError as loadGltf() does.
+void findGltfFiles(const std::filesystem::path& path, SceneFolder& folder);
 
 }  // namespace oitlab

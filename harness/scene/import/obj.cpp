@@ -6,6 +6,7 @@
 #include <fstream>
 #include <istream>
 #include <optional>
+#include <sstream>
 #include <streambuf>
 #include <tuple>
 #include <unordered_map>
@@ -14,6 +15,7 @@
 
 #include "scene/import/obj_material.h"
 #include "util/error.h"
+#include "util/text_file.h"
 
 namespace oitlab {
 namespace {
@@ -95,7 +97,7 @@ struct CornerHash {
 
 class Reader {
  public:
-  Reader(Scene& scene, LineBuffer& lines, const std::filesystem::path& folder)
+  Reader(Scene& scene, LineBuffer& lines, SceneFolder& folder)
       : scene_(scene), lines_(lines), materials_(scene, folder) {}
 
   void addPosition(glm::vec3 p) {
@@ -200,13 +202,31 @@ struct Libraries : tinyobj::MaterialReader {
 
 }  // namespace
 
-Scene loadObj(const std::filesystem::path& path) {
+void findObjFiles(const std::filesystem::path& path, SceneFolder& folder) {
+  checkRegularFile(path);
+  std::ifstream stream(path, std::ios::binary);
+  for (std::string line; std::getline(stream, line);) {
+    std::istringstream words(line);
+    std::string name;
+    if (!(words >> name) || name != "mtllib") continue;
+    while (words >> name) {
+      const ObjLibrary library = readObjLibrary(name, folder);
+      for (const tinyobj::material_t& material : library.materials)
+        for (const std::string& texture : {material.diffuse_texname, material.alpha_texname})
+          if (!texture.empty()) folder.find(library.beside(texture));
+    }
+  }
+}
+
+Scene loadObj(const std::filesystem::path& path, bool allowOutside) {
+  checkRegularFile(path);
+  SceneFolder folder(path, allowOutside);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail<InputError>("{}: cannot be opened for reading", path.string());
   Scene scene;
   scene.name = path.stem().string();
   LineBuffer lines(stream, path.string());
-  Reader state(scene, lines, path.parent_path());
+  Reader state(scene, lines, folder);
   Libraries libraries(state);
   tinyobj::callback_t calls;
   calls.vertex_cb = [](void* to, float x, float y, float z, float) {

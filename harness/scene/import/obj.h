@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "scene/import/scene_folder.h"
 #include "scene/scene.h"
 
 namespace oitlab {
@@ -14,6 +15,13 @@ namespace oitlab {
 /// Scene::repairs: missing libraries, materials and textures, non-finite numbers, polygons with
 /// repeated corners. For an invalid index or number it throws InputError with file and line.
 /// loadScene() adds the bounds and the default view.
-Scene loadObj(const std::filesystem::path& path);
+///
+/// Libraries and textures are read from regular files in the folder of `path`, and with
+/// `allowOutside` from others too; a file that names another one is refused (SceneFolder).
+Scene loadObj(const std::filesystem::path& path, bool allowOutside = false);
+
+/// Asks `folder` for every file that the OBJ file `path` and its libraries name, without decoding
+/// textures. Throws InputError as loadObj() does for files that are refused.
+void findObjFiles(const std::filesystem::path& path, SceneFolder& folder);
 
 }  // namespace oitlab

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <fstream>
 
-#include <tiny_obj_loader.h>
-
 #include "scene/import/texture_file.h"
 
 namespace oitlab {
@@ -16,7 +14,7 @@ float share(float value) {  // NaN becomes 0
 }
 
 // Files that were written on Windows have backslashes in their paths.
-std::filesystem::path localPath(std::string name) {
+std::string localPath(std::string name) {
   std::ranges::replace(name, '\\', '/');
   return name;
 }
@@ -36,14 +34,28 @@ void applyMask(const Texture& mask, Texture& color) {
 
 }  // namespace
 
-int ObjMaterials::readTextures(const std::filesystem::path& folder, const std::string& color,
-                               const std::string& alpha) {
+std::string ObjLibrary::beside(const std::string& file) const {
+  return file.empty() ? "" : (name.parent_path() / localPath(file)).string();
+}
+
+ObjLibrary readObjLibrary(const std::string& name, SceneFolder& folder) {
+  ObjLibrary library{.name = localPath(name)};
+  std::ifstream stream(folder.find(library.name.string()));
+  if (!stream) return library;
+  library.found = true;
+  std::string warning, error;
+  tinyobj::LoadMtl(&library.indices, &library.materials, &stream, &warning, &error);
+  library.hasErrors = !error.empty();
+  return library;
+}
+
+int ObjMaterials::readTextures(const std::string& color, const std::string& alpha) {
   if (color.empty() && alpha.empty()) return -1;
   const auto [known, fresh] = textures_.try_emplace(color + "\n" + alpha, -1);
   if (!fresh) return known->second;
   Texture texture, mask;
-  const bool hasColor = !color.empty() && readTexture(folder / localPath(color), texture);
-  const bool hasMask = !alpha.empty() && readTexture(folder / localPath(alpha), mask);
+  const bool hasColor = !color.empty() && readTexture(folder_.find(color), texture);
+  const bool hasMask = !alpha.empty() && readTexture(folder_.find(alpha), mask);
   scene_.repaired(
       "textures left out, which are missing or unreadable",
       std::uint64_t(!color.empty() && !hasColor) + std::uint64_t(!alpha.empty() && !hasMask));
@@ -58,26 +70,21 @@ int ObjMaterials::readTextures(const std::filesystem::path& folder, const std::s
 }
 
 void ObjMaterials::readLibrary(const std::string& name) {
-  const std::filesystem::path path = folder_ / localPath(name);
-  std::error_code ignored;
-  std::ifstream stream(path);
-  if (!std::filesystem::is_regular_file(path, ignored) || !stream)
+  const ObjLibrary library = readObjLibrary(name, folder_);
+  if (!library.found)
     return scene_.repaired("material libraries left out, which are missing or unreadable");
-  std::map<std::string, int> indices;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  tinyobj::LoadMtl(&indices, &materials, &stream, &warning, &error);
-  if (!error.empty()) scene_.repaired("material libraries with errors, read as far as possible");
-  for (const auto& [materialName, index] : indices) {
-    if (index < 0 || std::size_t(index) >= materials.size()) continue;
-    const tinyobj::material_t& from = materials[std::size_t(index)];
+  if (library.hasErrors) scene_.repaired("material libraries with errors, read as far as possible");
+  for (const auto& [materialName, index] : library.indices) {
+    if (index < 0 || std::size_t(index) >= library.materials.size()) continue;
+    const tinyobj::material_t& from = library.materials[std::size_t(index)];
     Material material{.name = materialName};
     for (int i = 0; i < 3; ++i) material.baseColor[i] = share(from.diffuse[i]);
     material.baseColor.a = share(from.dissolve);
     // Some exporters write a black Kd beside a texture, which is to be ignored.
     if (!from.diffuse_texname.empty() && glm::vec3(material.baseColor) == glm::vec3(0.0f))
       material.baseColor = glm::vec4(1.0f, 1.0f, 1.0f, material.baseColor.a);
-    material.texture = readTextures(path.parent_path(), from.diffuse_texname, from.alpha_texname);
+    material.texture =
+        readTextures(library.beside(from.diffuse_texname), library.beside(from.alpha_texname));
     const bool clear =
         material.texture >= 0 && scene_.textures[std::size_t(material.texture)].hasAlpha();
     if (material.baseColor.a < 1.0f || clear) {

@@ -1,5 +1,8 @@
 """What is wrong is said in one line with the remedy, under the right exit code, and nothing is left."""
 
+import json
+import os
+
 import pytest
 
 RENDER = ["render", "--size", "32x18"]
@@ -76,3 +79,73 @@ def test_no_vulkan_device(oitlab, tmp_path):
 def test_no_such_device_number(oitlab):
     done = oitlab("render", "--scene", "planes", "--method", "blend", "--device", "99")
     assert done.returncode == 3 and "99" in done.stderr and "oitlab info" in done.stderr
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+TOO_LONG = 300 * "x"  # no file system has names of more than 255 bytes
+NAMES_OF_FILES = [
+    ["render", "--method", "blend", "--scene", "{}.glb"],
+    ["render", "--method", "blend", "--scene", "{}/x.obj"],
+    ["render", "--method", "blend", "--scene", "boxes", "--out", "{}/x.png"],
+    ["scene", "{}.obj"],
+    ["compare", "{}.png", "{}.png"],
+    ["run", "{}.toml"],
+    ["report", "{}"],
+    ["diff", "{}", "{}"],
+]
+
+
+def one_line(done):
+    assert done.returncode == 2, (done.returncode, done.stderr)
+    assert done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+
+
+@pytest.mark.parametrize("arguments", NAMES_OF_FILES, ids=" ".join)
+def test_a_name_that_no_file_system_has(oitlab, arguments, tmp_path):
+    one_line(oitlab(*[word.format(TOO_LONG, TOO_LONG) for word in arguments], cwd=tmp_path))
+
+
+@pytest.mark.parametrize("arguments", NAMES_OF_FILES, ids=" ".join)
+def test_a_link_to_itself(oitlab, arguments, tmp_path):
+    for name in ("loop", "loop.glb", "loop.obj", "loop.png", "loop.toml"):
+        (tmp_path / name).symlink_to(name)
+    one_line(oitlab(*[word.format("loop", "loop") for word in arguments], cwd=tmp_path))
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+@pytest.mark.parametrize("arguments", NAMES_OF_FILES, ids=" ".join)
+def test_a_folder_that_may_not_be_read(oitlab, arguments, tmp_path):
+    folder = tmp_path / "closed"
+    folder.mkdir()
+    folder.chmod(0)
+    try:
+        one_line(oitlab(*[word.format("closed/x", "closed/x") for word in arguments], cwd=tmp_path))
+    finally:
+        folder.chmod(0o700)
+
+
+def test_a_name_that_is_not_utf8_is_replaced_in_json(oitlab, tmp_path):
+    name = os.fsdecode(b"\xff.obj")
+    (tmp_path / name).write_text(TRIANGLE)
+    done = oitlab("scene", name, "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "\ufffd" in json.loads(done.stdout)["scene"]
+
+
+def test_a_scene_may_not_read_what_is_outside_its_folder(oitlab, tmp_path):
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (folder / "x.obj").write_text("mtllib ../secret.mtl\n" + TRIANGLE)
+    (tmp_path / "secret.mtl").write_text("newmtl m\n")
+    done = oitlab("scene", "scene/x.obj", cwd=tmp_path)
+    one_line(done)
+    assert "'../secret.mtl'" in done.stderr and "--allow-outside" in done.stderr
+    assert oitlab("scene", "scene/x.obj", "--allow-outside", cwd=tmp_path).returncode == 0
+
+
+def test_a_scene_that_is_a_device_ends(oitlab, tmp_path):
+    (tmp_path / "x.obj").symlink_to("/dev/zero")
+    done = oitlab("scene", "x.obj", cwd=tmp_path)
+    one_line(done)
+    assert "not a regular file" in done.stderr

@@ -104,7 +104,7 @@ TEST_F(Obj, MasksBecomeTheTexturesAlpha) {
 }
 
 TEST_F(Obj, WhatIsMissingIsCounted) {
-  write("x.mtl", "newmtl a\nmap_Kd nowhere.png\nmap_d ../neither.png\n");
+  write("x.mtl", "newmtl a\nmap_Kd nowhere.png\nmap_d neither.png\n");
   const Scene scene = load("mtllib gone.mtl\nmtllib x.mtl\n" + kTriangle +
                            "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nf 1 2 3\n");
   EXPECT_EQ(scene.triangles.size(), 3u);
