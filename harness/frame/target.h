@@ -8,8 +8,6 @@
 
 namespace oitlab {
 
-class GpuScene;
-
 /// Pixel formats of the colour target. All of them hold linear values.
 enum class TargetFormat { rgba16f, rgba8, rgba32f };
 
@@ -49,21 +47,6 @@ class Target {
   TargetFormat format_;
   MemoryLedger memory_;
   GpuImage color_, depth_;
-};
-
-/// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive
-/// it. A method that samples its own images makes a set with them: at most
-/// Device::methodImageCount, and they must be in shaderReadOnlyOptimal when they are sampled.
-class FrameBindings {
- public:
-  FrameBindings(const Device& device, const GpuScene& scene, const Target& target,
-                std::span<const GpuImage* const> methodImages = {});
-  vk::DescriptorSet set() const { return *set_; }
-
- private:
-  vk::raii::Sampler atlasSampler_ = nullptr, depthSampler_ = nullptr;
-  vk::raii::DescriptorPool pool_ = nullptr;
-  vk::raii::DescriptorSet set_ = nullptr;
 };
 
 }  // namespace oitlab

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frame/frame.h"
+#include "frame/frame_bindings.h"
 #include "method/method.h"
 
 namespace oitlab {

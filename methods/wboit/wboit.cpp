@@ -1,5 +1,6 @@
 // Weighted blended OIT (McGuire and Bavoil 2013): no sorting and no lists, one geometry pass and a
 // composite. The order is approximated by weights that fall off with depth.
+#include "frame/frame_bindings.h"
 #include "frame/sample_counter.h"
 #include "method/method.h"
 #include "wboit/wboit_types.h"
