@@ -112,7 +112,8 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
 ShaderLibrary::ShaderLibrary(bool shaderPrintf)
     : root_(absoluteNormal(dataRoot() / "shaders")),
       cache_(cacheRoot() / "spirv"),
-      preamble_(shaderPrintf ? std::string(preamble) + printfPreamble : preamble) {
+      preamble_(preamble) {
+  if (shaderPrintf) preamble_ += printfPreamble;
   std::error_code none;
   if (!std::filesystem::is_directory(root_, none))
     fail<InputError>("{}: no such folder; set OITLAB_ROOT to the folder that holds shaders/",
