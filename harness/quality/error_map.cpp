@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "quality/colour_map.h"
+#include "quality/color_map.h"
 #include "quality/compare.h"
 #include "quality/difference.h"
 #include "quality/flip.h"
@@ -19,7 +19,7 @@
 namespace oitlab {
 namespace {
 
-using Colour = std::array<float, 3>;
+using Color = std::array<float, 3>;
 
 constexpr std::pair<const char*, MapMetric> kMetrics[] = {{"abs", MapMetric::absolute},
                                                           {"flip", MapMetric::flip},
@@ -27,16 +27,16 @@ constexpr std::pair<const char*, MapMetric> kMetrics[] = {{"abs", MapMetric::abs
                                                           {"ssim", MapMetric::ssim}};
 
 /// Not in the colour map: a value that is not finite must not look like a large error.
-constexpr Colour kNotFinite = {0, 1, 0};
+constexpr Color kNotFinite = {0, 1, 0};
 /// The frame of the legend must not look like an error of 0.
-constexpr Colour kPaper = {0.2F, 0.2F, 0.2F};
-constexpr Colour kInk = {1, 1, 1};
+constexpr Color kPaper = {0.2F, 0.2F, 0.2F};
+constexpr Color kInk = {1, 1, 1};
 
 /// Narrower maps are padded, because the legend needs room for its numbers.
 constexpr int kMinWidth = 64;
 
-void setPixel(Image& map, int x, int y, const Colour& colour) {
-  std::copy(colour.begin(), colour.end(), map.at(x, y));
+void setPixel(Image& map, int x, int y, const Color& color) {
+  std::copy(color.begin(), color.end(), map.at(x, y));
 }
 
 Image makePaper(int width, int height) {
@@ -58,7 +58,7 @@ void drawLegend(Image& map, int top, int unit, const std::string& label) {
   const int right = labelX - 2 * unit;
   for (int x = left; x < right; ++x)
     for (int row = 0; row < height; ++row)
-      setPixel(map, x, y + row, infernoColour((x - left) / std::max(1.0, right - left - 1.0)));
+      setPixel(map, x, y + row, infernoColor((x - left) / std::max(1.0, right - left - 1.0)));
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Image drawMap(const Plane<float>& values, float scale) {
   for (int y = 0; y < values.height; ++y)
     for (int x = 0; x < values.width; ++x) {
       const float value = values.row(y)[x];
-      setPixel(map, x, y, std::isfinite(value) ? infernoColour(double(value) / scale) : kNotFinite);
+      setPixel(map, x, y, std::isfinite(value) ? infernoColor(double(value) / scale) : kNotFinite);
     }
   drawLegend(map, values.height, unit, fmt::format("{:.3g}", scale));
   return map;

@@ -4,37 +4,37 @@
 #include <cmath>
 
 #include "quality/display.h"
-#include "quality/flip_colour.h"
+#include "quality/flip_color.h"
 #include "quality/flip_feature.h"
 #include "util/check.h"
 
 namespace oitlab {
 namespace {
 
-Colour3 colourAt(const Planes<float>& planes, std::size_t i) {
+Color3 colorAt(const Planes<float>& planes, std::size_t i) {
   return {planes[0].values[i], planes[1].values[i], planes[2].values[i]};
 }
 
 Plane<float> luminanceOf(const Planes<float>& rgb) {
   Plane<float> result(rgb[0].width, rgb[0].height);
-  forEachPixel(result, [&](std::size_t i) { result.values[i] = luminance(colourAt(rgb, i)); });
+  forEachPixel(result, [&](std::size_t i) { result.values[i] = luminance(colorAt(rgb, i)); });
   return result;
 }
 
 /// FLIP of linear sRGB in [0, 1] (Andersson et al. 2020, section 4).
 Plane<float> flipMap(const Planes<float>& a, const Planes<float>& b, double pixelsPerDegree) {
-  const Planes<float> colourA = perceivedColours(a, pixelsPerDegree);
-  const Planes<float> colourB = perceivedColours(b, pixelsPerDegree);
+  const Planes<float> colorA = perceivedColors(a, pixelsPerDegree);
+  const Planes<float> colorB = perceivedColors(b, pixelsPerDegree);
   const Features featureA = detectFeatures(luminanceOf(a), pixelsPerDegree);
   const Features featureB = detectFeatures(luminanceOf(b), pixelsPerDegree);
   Plane<float> map(a[0].width, a[0].height);
   forEachPixel(map, [&](std::size_t i) {
-    const float colour = flipColourDifference(colourAt(colourA, i), colourAt(colourB, i));
+    const float color = flipColorDifference(colorAt(colorA, i), colorAt(colorB, i));
     const float feature =
         flipFeatureDifference(featureA.edges.values[i], featureB.edges.values[i],
                               featureA.points.values[i], featureB.points.values[i]);
     // Section 4.3, eq. 11. Clamped, because rounding may leave [0, 1].
-    map.values[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
+    map.values[i] = std::clamp(std::pow(color, 1 - feature), 0.0F, 1.0F);
   });
   return map;
 }

@@ -27,10 +27,10 @@ int glyphOf(char c) {
   }
 }
 
-void fillCell(Image& image, int x, int y, int size, const std::array<float, 3>& colour) {
+void fillCell(Image& image, int x, int y, int size, const std::array<float, 3>& color) {
   for (int py = std::max(y, 0); py < std::min(y + size, image.height); ++py)
     for (int px = std::max(x, 0); px < std::min(x + size, image.width); ++px)
-      std::copy(colour.begin(), colour.end(), image.at(px, py));
+      std::copy(color.begin(), color.end(), image.at(px, py));
 }
 
 }  // namespace
@@ -44,13 +44,13 @@ int tinyTextHeight(int scale) {
 }
 
 void drawTinyText(Image& image, int x, int y, int scale, std::string_view text,
-                  const std::array<float, 3>& colour) {
+                  const std::array<float, 3>& color) {
   for (const char c : text) {
     const int glyph = glyphOf(c);
     for (int row = 0; row < kRows; ++row)
       for (int column = 0; column < kColumns; ++column) {
         const int bit = (kRows - 1 - row) * kColumns + (kColumns - 1 - column);
-        if (glyph >> bit & 1) fillCell(image, x + column * scale, y + row * scale, scale, colour);
+        if (glyph >> bit & 1) fillCell(image, x + column * scale, y + row * scale, scale, color);
       }
     x += (kColumns + 1) * scale;
   }

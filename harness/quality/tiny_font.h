@@ -14,6 +14,6 @@ int tinyTextHeight(int scale);
 
 /// Draws with the upper left corner at (x, y). Clips at the edges of the image.
 void drawTinyText(Image& image, int x, int y, int scale, std::string_view text,
-                  const std::array<float, 3>& colour);
+                  const std::array<float, 3>& color);
 
 }  // namespace oitlab

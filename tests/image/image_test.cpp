@@ -37,14 +37,14 @@ Image makeRamp(int width, int height) {
 }
 
 /// Writes a PNG of any kind, because readImage() must read the files of other programs.
-void writePng(const std::filesystem::path& path, int colourType, int bitDepth, int width,
+void writePng(const std::filesystem::path& path, int colorType, int bitDepth, int width,
               std::vector<std::vector<png_byte>> rows, std::vector<png_color> palette = {},
               int interlace = PNG_INTERLACE_NONE) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
   std::FILE* file = std::fopen(path.c_str(), "wb");
   png_init_io(png, file);
-  png_set_IHDR(png, info, width, png_uint_32(rows.size()), bitDepth, colourType, interlace,
+  png_set_IHDR(png, info, width, png_uint_32(rows.size()), bitDepth, colorType, interlace,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   if (!palette.empty()) png_set_PLTE(png, info, palette.data(), int(palette.size()));
   std::vector<png_bytep> pointers;
@@ -181,7 +181,7 @@ TEST_F(ImageFile, ExrOfEveryKindIsRead) {
               ElementsAre(0.25F, 0.25F, 0.25F, 0.25F, 0.5F, 0.5F, 0.5F, 0.5F));
 }
 
-TEST_F(ImageFile, ExrWithoutColourIsRefused) {
+TEST_F(ImageFile, ExrWithoutColorIsRefused) {
   writeExr(folder_ / "depth.exr", {"Z", "A"});
   const std::string message = readFailure(folder_ / "depth.exr");
   EXPECT_THAT(message, HasSubstr("depth.exr"));

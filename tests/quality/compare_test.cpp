@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "quality/colour_map.h"
+#include "quality/color_map.h"
 #include "quality/tiny_font.h"
 #include "support/temporary_folder.h"
 #include "util/error.h"
@@ -140,7 +140,7 @@ TEST(CompareImages, SizesMustBeEqual) {
   EXPECT_NE(messageOf<InputError>([] { errorMap(makeFlat(2, 3, 0), makeFlat(3, 2, 0), 1); }), "");
 }
 
-std::array<float, 3> colourAt(const Image& map, int x, int y) {
+std::array<float, 3> colorAt(const Image& map, int x, int y) {
   const float* pixel = map.at(x, y);
   return {pixel[0], pixel[1], pixel[2]};
 }
@@ -154,11 +154,11 @@ TEST(ErrorMap, ShowsTheLargestChannelOnTheScale) {
   EXPECT_TRUE(map.srgb);
   EXPECT_EQ(map.width, 100);
   EXPECT_GT(map.height, 4);
-  EXPECT_EQ(colourAt(map, 0, 0), infernoColour(0));
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(map.at(1, 0)[c], infernoColour(0.5)[c], 1e-5);
-  EXPECT_EQ(colourAt(map, 2, 0), infernoColour(1));
-  EXPECT_EQ(colourAt(map, 3, 0), (std::array<float, 3>{0, 1, 0}));
-  EXPECT_EQ(colourAt(map, 0, 3), infernoColour(0));
+  EXPECT_EQ(colorAt(map, 0, 0), infernoColor(0));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(map.at(1, 0)[c], infernoColor(0.5)[c], 1e-5);
+  EXPECT_EQ(colorAt(map, 2, 0), infernoColor(1));
+  EXPECT_EQ(colorAt(map, 3, 0), (std::array<float, 3>{0, 1, 0}));
+  EXPECT_EQ(colorAt(map, 0, 3), infernoColor(0));
 }
 
 TEST(ErrorMap, EachMetricIsZeroWhereEqualAndInfinityWhereNotANumber) {
@@ -203,9 +203,9 @@ TEST(ErrorMap, LegendRunsFromDarkToBright) {
   // same distance from the three characters of 0.1 on the right.
   const int y = 4 + 2;
   const int right = 100 - 2 - tinyTextWidth("0.1", 1) - 2 - 1;
-  EXPECT_EQ(colourAt(map, 7, y), infernoColour(0));
-  EXPECT_EQ(colourAt(map, right, y), infernoColour(1));
-  EXPECT_EQ(colourAt(map, 2, y), (std::array<float, 3>{1, 1, 1}));  // a corner of the digit 0
+  EXPECT_EQ(colorAt(map, 7, y), infernoColor(0));
+  EXPECT_EQ(colorAt(map, right, y), infernoColor(1));
+  EXPECT_EQ(colorAt(map, 2, y), (std::array<float, 3>{1, 1, 1}));  // a corner of the digit 0
 }
 
 TEST(ErrorMap, SmallImagesGetRoomForTheLegend) {
@@ -214,17 +214,17 @@ TEST(ErrorMap, SmallImagesGetRoomForTheLegend) {
   EXPECT_EQ(map.rgba.size(), std::size_t(map.width) * map.height * 4);
 }
 
-TEST(InfernoColour, GetsLighterAllTheWay) {
+TEST(InfernoColor, GetsLighterAllTheWay) {
   double last = -1;
   for (int i = 0; i <= 100; ++i) {
-    const auto [r, g, b] = infernoColour(i / 100.0);
+    const auto [r, g, b] = infernoColor(i / 100.0);
     const double luminance =
         0.2126 * srgbDecode(r) + 0.7152 * srgbDecode(g) + 0.0722 * srgbDecode(b);
     EXPECT_GT(luminance, last) << i;
     last = luminance;
   }
-  EXPECT_EQ(infernoColour(-1), infernoColour(0));
-  EXPECT_EQ(infernoColour(2), infernoColour(1));
+  EXPECT_EQ(infernoColor(-1), infernoColor(0));
+  EXPECT_EQ(infernoColor(2), infernoColor(1));
 }
 
 TEST(TinyText, DrawsADigitAndClips) {

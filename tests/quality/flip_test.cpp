@@ -5,17 +5,17 @@
 
 #include <gtest/gtest.h>
 
-#include "quality/flip_colour.h"
+#include "quality/flip_color.h"
 #include "quality/flip_feature.h"
 #include "util/random.h"
 
 namespace oitlab {
 namespace {
 
-Image makeFlat(int width, int height, const Colour3& colour, bool srgb = true) {
+Image makeFlat(int width, int height, const Color3& color, bool srgb = true) {
   Image image{width, height, srgb, std::vector<float>(std::size_t(width) * height * 4, 1.0F)};
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) std::copy(colour.begin(), colour.end(), image.at(x, y));
+    for (int x = 0; x < width; ++x) std::copy(color.begin(), color.end(), image.at(x, y));
   return image;
 }
 
@@ -26,13 +26,13 @@ Image makeNoise(int width, int height, std::uint64_t seed, float scale = 1, bool
   return image;
 }
 
-TEST(FlipColour, KnownColours) {
+TEST(FlipColor, KnownColors) {
   // White is the white of both spaces. The CIELAB values of the primaries are in published tables.
-  const Colour3 white = toHuntLab({1, 1, 1});
+  const Color3 white = toHuntLab({1, 1, 1});
   EXPECT_NEAR(white[0], 100, 1e-3);
   EXPECT_NEAR(white[1], 0, 1e-3);
   EXPECT_NEAR(white[2], 0, 1e-3);
-  const Colour3 green = toHuntLab({0, 1, 0}), blue = toHuntLab({0, 0, 1});
+  const Color3 green = toHuntLab({0, 1, 0}), blue = toHuntLab({0, 0, 1});
   EXPECT_NEAR(green[0], 87.735, 0.01);
   EXPECT_NEAR(green[1], -86.183 * 0.87735, 0.02);
   EXPECT_NEAR(green[2], 83.180 * 0.87735, 0.02);
@@ -40,24 +40,24 @@ TEST(FlipColour, KnownColours) {
   EXPECT_NEAR(blue[1], 79.188 * 0.32297, 0.02);
   EXPECT_NEAR(blue[2], -107.860 * 0.32297, 0.02);
   EXPECT_NEAR(luminance({1, 0, 0}), 0.2126, 1e-4);
-  const Colour3 grey = toYCxCz({0.5F, 0.5F, 0.5F});
+  const Color3 grey = toYCxCz({0.5F, 0.5F, 0.5F});
   EXPECT_NEAR(grey[0], 116 * 0.5 - 16, 1e-4);
   EXPECT_NEAR(grey[1], 0, 1e-4);
-  const Colour3 back = fromYCxCz(toYCxCz({0.2F, 0.7F, 0.4F}));
+  const Color3 back = fromYCxCz(toYCxCz({0.2F, 0.7F, 0.4F}));
   EXPECT_NEAR(back[0], 0.2, 1e-6);
   EXPECT_NEAR(back[1], 0.7, 1e-6);
   EXPECT_NEAR(back[2], 0.4, 1e-6);
 }
 
-TEST(FlipColour, DistancesAreRedistributedInTwoPieces) {
+TEST(FlipColor, DistancesAreRedistributedInTwoPieces) {
   EXPECT_FLOAT_EQ(hyAb({50, 3, 0}, {40, 0, 4}), 15);  // 10 + a 3-4-5 triangle
-  const Colour3 green = toHuntLab({0, 1, 0}), blue = toHuntLab({0, 0, 1});
-  EXPECT_FLOAT_EQ(flipColourDifference(green, blue), 1);
-  EXPECT_FLOAT_EQ(flipColourDifference(green, green), 0);
+  const Color3 green = toHuntLab({0, 1, 0}), blue = toHuntLab({0, 0, 1});
+  EXPECT_FLOAT_EQ(flipColorDifference(green, blue), 1);
+  EXPECT_FLOAT_EQ(flipColorDifference(green, green), 0);
   // At the knee, 0.4 of the largest difference, it is 0.95, and at half of the knee half of that.
   const double largest = std::pow(hyAb(green, blue), 0.7);
   const auto at = [](double powered) {
-    return flipColourDifference({float(std::pow(powered, 1 / 0.7)), 0, 0}, {0, 0, 0});
+    return flipColorDifference({float(std::pow(powered, 1 / 0.7)), 0, 0}, {0, 0, 0});
   };
   EXPECT_NEAR(at(0.4 * largest), 0.95, 1e-5);
   EXPECT_NEAR(at(0.2 * largest), 0.475, 1e-5);
@@ -86,7 +86,7 @@ TEST(FlipFeature, AnEdgeAndAPointAreFoundAndFlatIsNothing) {
   EXPECT_NEAR(flipFeatureDifference(1, 0.5F, 0.2F, 0.3F), std::sqrt(0.5 / std::sqrt(2)), 1e-6);
 }
 
-TEST(Flip, FlatImagesAreTheirColourDifference) {
+TEST(Flip, FlatImagesAreTheirColorDifference) {
   EXPECT_EQ(computeFlip(makeFlat(30, 20, {0.3F, 0.9F, 0}), makeFlat(30, 20, {0.3F, 0.9F, 0})).mean,
             0);
   // Black and white differ by a lightness of 100, and 100^0.7 = 25.119. For green and blue the

@@ -194,7 +194,7 @@ TEST_F(Abuffer, EveryTargetFormatIsThatOfTheReference) {
 }
 
 // Colours in lists may be stored with less precision. The format in local memory changes nothing.
-TEST_F(Abuffer, ColoursAreHeldAsAskedFor) {
+TEST_F(Abuffer, ColorsAreHeldAsAskedFor) {
   RenderFixture fixture = columnFixture({1, 9, 40, 100});
   const auto exact = fixture.render("reference");
   for (const char* local : {"keys", "fragments"}) {

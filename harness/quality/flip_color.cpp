@@ -1,4 +1,4 @@
-#include "quality/flip_colour.h"
+#include "quality/flip_color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,8 +60,8 @@ constexpr Matrix makeRgbToWhiteXyz() {
 constexpr Matrix kRgbToXyz = makeRgbToWhiteXyz();
 constexpr Matrix kXyzToRgb = inverse(kRgbToXyz);
 
-Colour3 transform(const Matrix& m, const Colour3& v) {
-  Colour3 result{};
+Color3 transform(const Matrix& m, const Color3& v) {
+  Color3 result{};
   for (std::size_t i = 0; i < 3; ++i)
     result[i] = float(m[i][0]) * v[0] + float(m[i][1]) * v[1] + float(m[i][2]) * v[2];
   return result;
@@ -133,57 +133,57 @@ Plane<float> filterBy(const Sensitivity& s, const Plane<float>& plane, double pi
 
 /// Calls change(colour) for every pixel, on all cores.
 template <typename Change>
-void changeColours(Planes<float>& planes, Change&& change) {
+void changeColors(Planes<float>& planes, Change&& change) {
   forEachPixel(planes[0], [&](std::size_t i) {
-    const Colour3 colour =
-        change(Colour3{planes[0].values[i], planes[1].values[i], planes[2].values[i]});
-    for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
+    const Color3 color =
+        change(Color3{planes[0].values[i], planes[1].values[i], planes[2].values[i]});
+    for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = color[c];
   });
 }
 
 }  // namespace
 
-float luminance(const Colour3& rgb) {
+float luminance(const Color3& rgb) {
   return transform(kRgbToXyz, rgb)[1];
 }
 
-Colour3 toYCxCz(const Colour3& rgb) {
+Color3 toYCxCz(const Color3& rgb) {
   const auto [x, y, z] = transform(kRgbToXyz, rgb);
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-Colour3 fromYCxCz(const Colour3& yCxCz) {
+Color3 fromYCxCz(const Color3& yCxCz) {
   const float y = (yCxCz[0] + 16) / 116;
   return transform(kXyzToRgb, {y + yCxCz[1] / 500, y, y - yCxCz[2] / 200});
 }
 
-Colour3 toHuntLab(const Colour3& rgb) {
-  const Colour3 xyz = transform(kRgbToXyz, rgb);
+Color3 toHuntLab(const Color3& rgb) {
+  const Color3 xyz = transform(kRgbToXyz, rgb);
   const float x = labCurve(xyz[0]), y = labCurve(xyz[1]), z = labCurve(xyz[2]);
   const float lightness = 116 * y - 16;
   return {lightness, 0.01F * lightness * 500 * (x - y), 0.01F * lightness * 200 * (y - z)};
 }
 
-float hyAb(const Colour3& a, const Colour3& b) {
+float hyAb(const Color3& a, const Color3& b) {
   const float da = a[1] - b[1], db = a[2] - b[2];
   return std::abs(a[0] - b[0]) + std::sqrt(da * da + db * db);
 }
 
-Planes<float> perceivedColours(const Planes<float>& rgb, double pixelsPerDegree) {
+Planes<float> perceivedColors(const Planes<float>& rgb, double pixelsPerDegree) {
   Planes<float> planes = rgb;
-  changeColours(planes, toYCxCz);
+  changeColors(planes, toYCxCz);
   constexpr const Sensitivity* sensitivities[] = {&kAchromatic, &kRedGreen, &kBlueYellow};
   for (std::size_t c = 0; c < 3; ++c)
     planes[c] = filterBy(*sensitivities[c], planes[c], pixelsPerDegree);
-  changeColours(planes, [](const Colour3& filtered) {
-    Colour3 shown = fromYCxCz(filtered);
+  changeColors(planes, [](const Color3& filtered) {
+    Color3 shown = fromYCxCz(filtered);
     for (float& value : shown) value = std::clamp(value, 0.0F, 1.0F);
     return toHuntLab(shown);
   });
   return planes;
 }
 
-float flipColourDifference(const Colour3& a, const Colour3& b) {
+float flipColorDifference(const Color3& a, const Color3& b) {
   // Section 4.1.2: large differences are compressed into the last 5% of the range.
   constexpr float qc = 0.7F, pc = 0.4F, pt = 0.95F;
   static const float largest =
