@@ -1,5 +1,5 @@
-// Hardware alpha blending: what everything else is measured against. Exact only where triangles
-// happen to arrive back to front.
+// Hardware alpha blending, the baseline of all measurements. It is exact only where triangles
+// happen to be submitted back to front.
 #include "blend/sort_types.h"
 
 #include "frame/sample_counter.h"
@@ -9,11 +9,11 @@
 
 namespace oitlab::blend {
 
-/// The triangles of a scene, back to front by the distance of their centroids, sorted on the
-/// device. Equal distances keep the order of submission.
+/// Sorts a scene's triangles on the device, back to front by the distance of their centroids.
+/// Triangles at equal distances stay in the order of submission.
 class CentroidSort {
  public:
-  /// At least one transparent triangle.
+  /// The scene must have at least one transparent triangle.
   CentroidSort(const Device& device, MemoryLedger& memory, const GpuScene& scene)
       : count_(scene.transparentCount()),
         keys_(Pipeline::compute(device, "blend/centroid_keys.comp")),
@@ -21,7 +21,7 @@ class CentroidSort {
         sort_(device, memory, count_),
         indices_(device, memory, "sorted indices", 12ull * count_) {}
 
-  /// Leaves the sorted triangles' vertex indices in indices().
+  /// Writes the vertex indices of the sorted triangles to indices().
   void record(const Frame& frame) const {
     using Stage = vk::PipelineStageFlagBits2;
     const CentroidPush push{.frame = frame.constants,
@@ -65,7 +65,7 @@ class Blend : public Method {
   }
 
   void record(const Frame& frame) override {
-    // In every frame, though the camera may stand still: a moving one would ask for it.
+    // In every frame, even if the camera does not move, as an application with a moving one would.
     if (sort_) frame.stage("sort", [&] { sort_->record(frame); });
     samples_.reset(frame);
     frame.stage("blend", [&] {

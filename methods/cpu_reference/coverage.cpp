@@ -8,14 +8,14 @@
 namespace oitlab::cpu_reference {
 namespace {
 
-// With coordinates of up to 53 bits and pixels of up to 15, an edge function stays below 2^125.
+// With coordinates of up to 53 bits and pixels of up to 15 bits, an edge function is below 2^125.
 constexpr int kPositionBits = 53;
 constexpr int kMaxSide = 1 << 14;
 
-// A centre that lies exactly on an edge belongs to the triangle whose left or top edge it is: the
-// rule of the rasterizers. `inside` is 1 or -1, the sign of the edge function inside. The rule is
-// antisymmetric in the edge's direction, so of two triangles that share the edge, one on either
-// side, exactly one has the centre. A zero-length edge (a = b = 0) has none.
+// A centre exactly on an edge belongs to the triangle if the edge is its left or top edge: the rule
+// of hardware rasterizers. `inside` is 1 or -1, the sign of the edge function inside the triangle.
+// The rule is antisymmetric in the edge's direction, so of two triangles on both sides of a shared
+// edge exactly one has the centre. An edge of length zero (a = b = 0) has none.
 bool ownsItsPoints(Int128 a, Int128 b, int inside) {
   return a * inside > 0 || (a == 0 && b * inside > 0);
 }
@@ -26,8 +26,8 @@ Projection::Projection(const Scene& scene, const Camera& camera, int width, int 
     : width_(width), height_(height) {
   OITLAB_CHECK_OP(std::max(width, height), <=, kMaxSide);
   OITLAB_CHECK_OP(std::min(width, height), >, 0);
-  // The matrix that the methods are given, in float32, is what defines the camera; rounding begins
-  // after it. Sums of products of two floats lose at most the last bit of a double.
+  // The float32 matrix that all methods get defines the camera, so its rounding is not an error.
+  // Sums of products of two floats lose at most the last bit of a double.
   const glm::dmat4 toClip(camera.projectionMatrix(float(width) / float(height)) *
                           camera.viewMatrix());
   const auto transform = [&](const Vertex& vertex) {
@@ -53,7 +53,7 @@ Triangle::Triangle(const Projection& projection, const glm::uvec3& corners)
     : projection_(projection),
       corners_{projection[corners.x], projection[corners.y], projection[corners.z]} {
   for (int i = 0; i < 3; ++i) {
-    // The plane through the eye and two corners: their cross product.
+    // The cross product of two corners is the plane through them and the eye.
     const Position &p = corners_[(i + 1) % 3], &q = corners_[(i + 2) % 3];
     Edge& edge = edges_[i];
     edge.a = Int128(p.y) * q.w - Int128(p.w) * q.y;
@@ -72,7 +72,7 @@ Hit Triangle::at(int pixelX, int pixelY) const {
     sum += value[i];
   }
   Hit hit;
-  if (sum == 0) return hit;  // seen edge-on
+  if (sum == 0) return hit;  // the triangle is seen edge-on
   const int inside = sum > 0 ? 1 : -1;
   bool nearEdge = false, withinReach = true;
   hit.covered = true;
@@ -98,7 +98,7 @@ Hit Triangle::at(int pixelX, int pixelY) const {
     hit.weightDy[i] = 2.0 * double(edges_[i].b) * scale - hit.weight[i] * sumDy;
     hit.distance += hit.weight[i] * double(corners_[i].w) * projection_.unit();
   }
-  // The line of sight goes on behind the eye, and a triangle there has weights too.
+  // The line of sight also exists behind the eye, and a triangle there has weights too.
   if (hit.distance <= 0.0) hit.covered = hit.nearEdge = false;
   return hit;
 }
@@ -121,7 +121,7 @@ PixelBox Triangle::box(double nearest) const {
       include(double(p.x) + t * double(q.x - p.x), double(p.y) + t * double(q.y - p.y), nearW);
     }
   }
-  // A pixel more on each side: the box is rounded, and edges nearby matter too.
+  // One more pixel on each side, because the box is rounded and edges near a pixel count too.
   const auto pixel = [](double v, int size) { return int(std::clamp(v, 0.0, double(size))); };
   PixelBox box{pixel(low.x - 1.0, projection_.width()), pixel(low.y - 1.0, projection_.height()),
                pixel(high.x + 2.0, projection_.width()), pixel(high.y + 2.0, projection_.height())};

@@ -1,5 +1,5 @@
-// The CPU renderer as a method: its picture is uploaded, so that it can be compared and scored like
-// any other. It is no contestant: GPU time is only that of the upload.
+// The CPU renderer as a method. Its image is uploaded, so that it can be compared like any other.
+// Its GPU time is only that of the upload, so it does not compete in speed.
 #include <glm/gtc/packing.hpp>
 
 #include "cpu_renderer.h"
@@ -52,7 +52,7 @@ class CpuReference : public Method {
     using Layout = vk::ImageLayout;
     const GpuImage& color = frame.target.color();
     frame.stage("upload", [&] {
-      // All of the opaque picture is overwritten.
+      // The whole opaque image is overwritten.
       color.transition(frame.commands, Layout::eUndefined, Layout::eTransferDstOptimal,
                        Stage::eAllCommands, Access::eMemoryWrite, Stage::eCopy,
                        Access::eTransferWrite);

@@ -13,22 +13,22 @@ namespace oitlab {
 namespace cpu_reference {
 namespace {
 
-// Relative error of a float32 depth: some 60 roundings of 2^-24, what a transform with cancellation
-// about the eye, the division and the interpolation come to. Where a surface is steep in depth, its
-// snapped vertices move it by more; that is added (Fragment::depthDoubt).
+// Relative error of a float32 depth: about 60 roundings of 2^-24, from a transform with
+// cancellation near the eye, the division and the interpolation. Where depth is steep, snapped
+// vertices change it more; that is added (Fragment::depthDoubt).
 constexpr double kDepthPrecision = 4e-6;
 
-// Of what must not show: half of the 2/255 that methods are held to.
+// The largest difference that is ignored: half of the tolerance of 2/255 for methods.
 constexpr double kVisible = 1.0 / 255;
 
 struct Fragment {
   int x = 0;
   std::uint32_t id = 0;     // primitive id
   double depth = 0.0;       // near / distance: larger is nearer
-  double depthDoubt = 0.0;  // depth may be off by this in float32
+  double depthDoubt = 0.0;  // possible error of the depth in float32
   glm::dvec4 color{0.0};
-  double colorDoubt = 0.0;  // what snapped vertices may change of it, premultiplied
-  bool exists = false;      // else it is only here for its doubt
+  double colorDoubt = 0.0;  // possible change by snapped vertices, premultiplied
+  bool exists = false;      // if false, it only counts for its doubt
   std::uint8_t doubts = 0;
 };
 
@@ -37,8 +37,8 @@ double difference(const glm::dvec4& a, const glm::dvec4& b) {
   return std::max({d.r, d.g, d.b});
 }
 
-// Changes of weights below this change no colour by half a step of 1/255: shading is at most twice
-// as steep as the attributes.
+// Smaller changes of weights change a colour by less than half a step of 1/255: shading is at most
+// twice as steep as the attributes.
 constexpr double kSteep = 0.5 / 255 / 2;
 
 class RowRenderer {
@@ -50,8 +50,8 @@ class RowRenderer {
     opaque_.clear();
     transparent_.clear();
     for (const std::uint32_t id : triangles) collect(id, y);
-    // Opaque ones: the depth test passes at equal depth, so the last submitted stays. Transparent
-    // ones: the lower primitive id in front (shaders/common/order.glsl).
+    // Opaque: the depth test passes at equal depth, so the last submitted fragment stays.
+    // Transparent: the lower primitive id is in front (shaders/common/order.glsl).
     std::ranges::sort(opaque_, [](const Fragment& a, const Fragment& b) {
       return std::tuple(a.x, -a.depth, ~a.id) < std::tuple(b.x, -b.depth, ~b.id);
     });
@@ -87,7 +87,7 @@ class RowRenderer {
                             std::abs(glm::dot(hit.weightDy, w))) /
                            hit.distance;
       f.depthDoubt = f.depth * (kDepthPrecision + Triangle::edgeDoubt * slope);
-      f.exists = hit.covered && f.depth <= 1.0;  // in front of the near plane there is nothing
+      f.exists = hit.covered && f.depth <= 1.0;  // there is nothing in front of the near plane
       if (hit.nearEdge || (hit.covered && std::abs(f.depth - 1.0) <= f.depthDoubt))
         f.doubts = doubt::edge;
       if (!f.exists && f.doubts == 0) continue;
@@ -101,8 +101,7 @@ class RowRenderer {
     }
   }
 
-  // By how much the colour changes over the distance that vertices are snapped by, in either
-  // direction.
+  // The change of the colour over the distance that snapping moves vertices, in both directions.
   double colorDoubt(const glm::uvec3& corners, const Hit& hit, const glm::dvec4& color) const {
     double changed = 0.0;
     for (const glm::dvec3& slope : {hit.weightDx, hit.weightDy}) {
@@ -117,7 +116,7 @@ class RowRenderer {
     return changed;
   }
 
-  // All fragments of one pixel, in order.
+  // The fragments of one pixel, in order.
   void resolve(std::span<const Fragment> opaque, std::span<const Fragment> transparent,
                std::size_t pixel, CpuImage& image) const {
     std::uint8_t doubts = 0;
@@ -134,7 +133,7 @@ class RowRenderer {
 
     glm::dvec3 color(0.0);
     double transmittance = 1.0;
-    double swaps = 0.0;  // bound on what a wrong order could change
+    double swaps = 0.0;  // bound on the change by a wrong order
     double snapping = 0.0;
     double largestDoubt = 0.0;
     for (const Fragment& f : transparent) largestDoubt = std::max(largestDoubt, f.depthDoubt);
@@ -168,7 +167,7 @@ class RowRenderer {
     return a.depth + a.depthDoubt >= b.depth - b.depthDoubt;
   }
 
-  // Copies of a triangle go through the same float operations, so their depths are equal anywhere.
+  // Copies of a triangle have the same float operations, so their depths are equal on every device.
   bool tooCloseToOrder(const Fragment& a, const Fragment& b) const {
     if (std::abs(a.depth - b.depth) > a.depthDoubt + b.depthDoubt) return false;
     for (int i = 0; i < 3; ++i)

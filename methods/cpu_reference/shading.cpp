@@ -10,9 +10,9 @@ namespace {
 const glm::dvec3 kToLight(0.3999, 0.8142, 0.4206);
 constexpr double kAmbient = 0.2;
 
-// Alpha as a device filters it: BC3 interpolates it in steps of 1/255, and texels are weighed in
-// steps of 1/256 in each direction and between levels; together up to 4/256, and a little for the
-// shader's log2.
+// The error of alpha on a device: BC3 interpolates it in steps of 1/255, and texels are weighted in
+// steps of 1/256 in each direction and between levels. Together these are up to 4/256, and a little
+// for the shader's log2.
 constexpr double kCutoffDoubt = 0.02;
 
 glm::dvec4 unpackColor(std::uint32_t packed) {
@@ -69,8 +69,8 @@ Shaded Shading::shade(const glm::uvec3& triangle, const Hit& hit) const {
   return result;
 }
 
-// Vulkan 1.3, 16.5.7 and 16.5.8, isotropic: the level is log2 of the longer of the two gradients in
-// texels, clamped to the levels there are; two levels are mixed by its fraction.
+// Vulkan 1.3, 16.5.7 and 16.5.8, isotropic: the level is log2 of the longer gradient in texels,
+// clamped to the existing levels. Two levels are mixed by its fraction.
 glm::dvec4 Shading::sample(const Levels& levels, glm::dvec2 uv, glm::dvec2 dx,
                            glm::dvec2 dy) const {
   const glm::dvec2 size(levels[0].width, levels[0].height);
@@ -83,7 +83,7 @@ glm::dvec4 Shading::sample(const Levels& levels, glm::dvec2 uv, glm::dvec2 dx,
   return fraction > 0.0 ? glm::mix(texel, bilinear(levels[fine + 1], uv), fraction) : texel;
 }
 
-// Colours are decoded before they are mixed, as an sRGB format demands.
+// Colours are decoded before they are mixed, as sRGB formats demand.
 glm::dvec4 Shading::bilinear(const Texels& level, glm::dvec2 uv) const {
   const glm::dvec2 at = uv * glm::dvec2(level.width, level.height) - 0.5;
   const glm::dvec2 corner = glm::floor(at), t = at - corner;

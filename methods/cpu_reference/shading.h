@@ -10,14 +10,15 @@
 namespace oitlab::cpu_reference {
 
 struct Shaded {
-  glm::dvec4 color{0.0};    ///< linear, not premultiplied
-  bool discarded = false;   ///< less alpha than the cutoff
-  bool nearCutoff = false;  ///< so close to it that filtering in 8 bits may decide otherwise
+  glm::dvec4 color{0.0};   ///< linear, not premultiplied
+  bool discarded = false;  ///< alpha is below the cutoff
+  bool nearCutoff =
+      false;  ///< alpha is so close to it that filtering in 8 bits may decide otherwise
 };
 
 class Shading {
  public:
-  /// `scene` must outlive this. Decodes the atlases: four bytes a texel.
+  /// `scene` must outlive this. Decodes the atlases, which takes four bytes per texel.
   Shading(const Scene& scene, const SceneAtlases& atlases);
 
   Shaded shade(const glm::uvec3& triangle, const Hit& hit) const;
@@ -35,7 +36,7 @@ class Shading {
   const Scene& scene_;
   std::vector<AtlasPlacement> placements_;
   Levels levels_[2];    // opaque, transparent
-  double linear_[256];  // of an sRGB code
+  double linear_[256];  // the value of each sRGB code
 };
 
 }  // namespace oitlab::cpu_reference

@@ -1,11 +1,11 @@
-// Depth peeling: one geometry pass a layer, from the front (Everitt 2001) or from both ends (Bavoil
-// and Myers 2008). What a pass does is in shaders/depth_peeling/peel.frag.
+// Depth peeling: one geometry pass per layer, from the front (Everitt 2001) or from both ends
+// (Bavoil and Myers 2008). shaders/depth_peeling/peel.frag says what a pass does.
 //
-// Who says how many passes: as many are recorded as the frame before needed, each is an indirect
-// draw that the pass before it asks for, and a frame that needs more is recorded again (which the
-// measuring does not count). So the CPU never waits for a query between passes, and under a camera
-// that stands still the frame holds exactly the passes that it needs. Where a camera moves to fewer
-// layers, the surplus passes are empty draws.
+// The number of passes: a frame has as many as the frame before it needed. Each is an indirect draw
+// that the pass before it enables. A frame that needs more is recorded again, which a measurement
+// does not count. Thus the CPU never waits for a query between passes, and with a fixed camera a
+// frame has exactly the passes that it needs. When a moving camera needs fewer, the remaining
+// passes are empty draws.
 #include "depth_peeling/peel_types.h"
 
 #include "gpu/counters_buffer.h"
@@ -54,7 +54,7 @@ class DepthPeeling : public Method {
                   .counters = counters_.address(),
                   .capacity = capacity_};
     frame.stage("clear", [&] {
-      fillBuffer(frame.commands, keys_[0], ~0u);  // all fragments are behind it
+      fillBuffer(frame.commands, keys_[0], ~0u);  // in front of all fragments
       fillBuffer(frame.commands, keys_[1], 0);
       fillBuffer(frame.commands, front_, 0);
       if (back_) fillBuffer(frame.commands, back_, 0);
@@ -78,7 +78,7 @@ class DepthPeeling : public Method {
   Status status() override {
     const PeelCounters counters = counters_.read<PeelCounters>();
     const auto draws = draws_.readAll<PassDraw>();
-    std::uint32_t asked = 0;  // passes, each by the one before it
+    std::uint32_t asked = 0;  // passes that were enabled, each by the one before it
     while (asked <= recorded_ && draws[asked].instanceCount > 0) ++asked;
     if (asked > recorded_) {
       if (recorded_ == maxPasses)
@@ -97,13 +97,14 @@ class DepthPeeling : public Method {
     if (counters.broken > 0)
       fail<DeviceError>("depth_peeling: the lists of {} pixels do not end as lists do",
                         counters.broken);
-    recorded_ = asked;  // of the next frame, until it asks for more
+    recorded_ = asked;  // for the next frame, which may need more
 
     const std::uint32_t blending = asked - 1;
     counted_["layers"] = blending + counters.lastBackPass;
     counted_["passes"] = wide_ ? asked : asked + blending;
     if (instrumented_) {
-      // Nothing is lost in silence, not even to a device that works depths out anew in each pass.
+      // A lost fragment is an error, even if the reason is a device whose depths differ between
+      // passes.
       if (counters.blended + counters.missed != counters.fragments)
         fail<DeviceError>(
             "depth_peeling: of {} fragments {} were blended and {} left over: {} does not give a "
@@ -116,10 +117,10 @@ class DepthPeeling : public Method {
   }
 
  private:
-  /// Below the 65,535 iterations at which llvmpipe ends a loop: resolve.comp has one a pass.
+  /// resolve.comp has one loop iteration per pass, and llvmpipe ends loops at 65,535 iterations.
   static constexpr std::uint32_t maxPasses = 1u << 15;
-  /// Of the first frame. Four times as many with each new recording come to maxPasses with one to
-  /// spare for the list, of the 8 that a renderer allows.
+  /// The passes of the first frame. Each new recording has four times as many, so that maxPasses is
+  /// reached, with one recording to spare for the list, within 8 recordings.
   static constexpr std::uint32_t firstPasses = 16;
 
   void makePipelines(const std::string& targetFormat) {
@@ -150,14 +151,15 @@ class DepthPeeling : public Method {
     return has && choice != "int32";
   }
 
-  /// The passes of a limited number of layers: the first one only finds.
+  /// The passes for a limited number of layers. The first pass only finds a layer.
   std::uint32_t neededAtMost() const {
     if (layers_ == 0) return std::numeric_limits<std::uint32_t>::max();
     return 1 + (dual_ ? (layers_ + 1) / 2 : layers_);
   }
 
   void recordPass(const Frame& frame, PeelPush& push) const {
-    const bool last = push.pass + 1 == neededAtMost();  // not of the recorded: of those wanted
+    const bool last =
+        push.pass + 1 == neededAtMost();  // the last that is needed, not the last that is recorded
     push.does = last ? 0 : PASS_FINDS;
     if (dual_ && !(last && layers_ % 2 == 1)) push.does |= PASS_HAS_BACK;
     if (frame.instrumented) push.does |= PASS_COUNTS | (push.pass == 0 ? PASS_COUNTS_ALL : 0);
@@ -165,7 +167,8 @@ class DepthPeeling : public Method {
     push.next = keys_[(push.pass + 1) % 3].address();
     frame.barrier(Stage::eFragmentShader | Stage::eTransfer,
                   Stage::eFragmentShader | Stage::eTransfer | Stage::eDrawIndirect);
-    // For the pass after this one, while this one draws: a third buffer saves a wait.
+    // Clears the buffer of the pass after this one while this one draws: a third buffer saves a
+    // wait.
     fillBuffer(frame.commands, keys_[(push.pass + 2) % 3], 0);
     draw(frame, peel_, push, push.pass);
     if (wide_ || last) return;
@@ -173,7 +176,7 @@ class DepthPeeling : public Method {
     draw(frame, ties_, push, push.pass + 1);
   }
 
-  /// Draws all transparent triangles, if pass `asked` was asked for.
+  /// Draws all transparent triangles, if pass `asked` is enabled.
   void draw(const Frame& frame, const Pipeline& pipeline, const PeelPush& push,
             std::uint32_t asked) const {
     frame.renderDepthTested({}, [&] {
@@ -185,7 +188,7 @@ class DepthPeeling : public Method {
     });
   }
 
-  /// One command for each pass that is recorded, and one for the pass that the last may ask for.
+  /// One command per recorded pass, and one for the pass that the last one may enable.
   void allocateDraws() {
     const std::uint64_t bytes = (recorded_ + 1) * sizeof(PassDraw);
     draws_ = CountersBuffer(device_, memory_, "pass draws", bytes);
@@ -198,7 +201,7 @@ class DepthPeeling : public Method {
     if (nodes >= LIST_END)
       fail<DeviceError>(
           "depth_peeling: {} fragments are more than the 2^32 - 1 that its lists can name", nodes);
-    listed_ = Buffer();  // give the old one back first: both may not fit
+    listed_ = Buffer();  // free the old one first: there may not be room for both
     listed_ = Buffer(device_, memory_, "back list", nodes * sizeof(BackFragment));
     capacity_ = std::uint32_t(nodes);
   }
@@ -212,7 +215,7 @@ class DepthPeeling : public Method {
   std::uint32_t recorded_ = 0;  // passes
   std::uint32_t capacity_ = 0;  // nodes of the back list
   Pipeline peel_, ties_, resolve_;
-  std::array<Buffer, 3> keys_;  // in turn: blended, found, cleared
+  std::array<Buffer, 3> keys_;  // in rotation: blended, found, cleared
   Buffer front_, back_, heads_, listed_, drawTemplate_;
   CountersBuffer counters_, draws_;
   std::map<std::string, std::uint64_t> counted_;

@@ -1,5 +1,5 @@
-// Figure 3 of Knowles et al. 2013 as an experiment: what it costs to have local memory in a shader,
-// used or not. Not a way to draw transparency: it adds nothing to the opaque image, many times.
+// Figure 3 of Knowles et al. 2013 as an experiment: the cost of local memory in a shader, whether
+// or not it is used. It does not draw transparency: it adds zero to the opaque image many times.
 #include "local_memory/local_memory_types.h"
 
 #include "method/method.h"

@@ -1,5 +1,6 @@
-// The exact image: every fragment in per-pixel linked lists (Yang et al. 2010), sorted in full
-// whatever the depth of the pixel, blended in float32. Simple before fast: others are judged by it.
+// The exact image: all fragments are in per-pixel linked lists (Yang et al. 2010), completely
+// sorted for every number of layers, and blended in float32. It is simple and not fast, because
+// other methods are compared with it.
 #include "reference/lists.h"
 
 #include "gpu/counters_buffer.h"
@@ -67,7 +68,7 @@ class Reference : public Method {
       rounds_ *= 2;
       return {.recordAgain = true};
     }
-    // Nothing is lost in silence, not even to a device that leaves loops early.
+    // A lost fragment is an error, even if the reason is a device that ends loops early.
     if (counters.resolved != counters.fragments)
       fail<DeviceError>(
           "reference: {} fragments were captured and {} blended: {} does not carry out "
@@ -84,7 +85,7 @@ class Reference : public Method {
     if (nodes >= LIST_END)
       fail<DeviceError>(
           "reference: {} fragments are more than the 2^32 - 1 that its lists can name", nodes);
-    nodes_ = Buffer();  // give the old one back first: both may not fit
+    nodes_ = Buffer();  // free the old one first: there may not be room for both
     nodes_ = Buffer(device_, memory_, "fragment nodes", nodes * sizeof(Node));
     capacity_ = std::uint32_t(nodes);
   }

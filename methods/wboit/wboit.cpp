@@ -1,5 +1,5 @@
-// Weighted blended OIT (McGuire and Bavoil 2013): no sorting and no lists, one geometry pass and a
-// composite. The order is approximated by weights that fall off with depth.
+// Weighted blended OIT (McGuire and Bavoil 2013): one geometry pass and a composite, without
+// sorting and lists. Weights that decrease with depth approximate the order.
 #include "frame/frame_bindings.h"
 #include "frame/sample_counter.h"
 #include "method/method.h"
@@ -95,14 +95,13 @@ class Wboit : public Method {
                             : vk::Format::eR16Sfloat;
   }
 
-  /// The depth, in the paper's units, up to which a weight falls: beyond 157, 99.9 and 263
-  /// equations 7, 8 and 9 are clamped to 1e-2 (solved for it), and all that lies there weighs the
-  /// same.
+  /// The depth, in the paper's units, up to which a weight decreases. Beyond the depths 157, 99.9
+  /// and 263, equations 7, 8 and 9 are clamped to 1e-2, so that all weights there are equal.
   static float rangeOf(const std::string& weight) {
     return weight == "eq7" ? 150.0f : weight == "eq8" ? 95.0f : 250.0f;
   }
 
-  /// The depth range of the scene from this camera, and the scale that takes it to the paper's.
+  /// The depth range of the scene for this camera, and the scale to the paper's units.
   WboitPush pushFor(const Frame& frame) const {
     const auto [nearest, farthest] = depthRange(frame.camera, frame.scene.scene().bounds);
     const float scale = depthScale_ > 0.0 ? float(depthScale_) : paperRange_ / farthest;
