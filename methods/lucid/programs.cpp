@@ -41,6 +41,14 @@ bool verifiesLoops(const Device& device) {
   return device.info().isCpu();
 }
 
+Defines teamDefines(const Device& device) {
+  const std::uint32_t lanes = device.info().subgroupSize;
+  return {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
+          {"SMALL_SUBGROUP", lanes < 32 ? "1" : "0"},
+          {"SUBGROUP_BARRIER", device.info().driver == "llvmpipe" ? "0" : "1"},
+          {"UNIFORM_CONTROL_FLOW", device.hasSubgroupUniformControlFlow() ? "1" : "0"}};
+}
+
 Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
                    const std::string& targetFormat, const Parameters& parameters)
     : irregular(hasIrregular) {
@@ -53,19 +61,6 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   const char* lowTeams = isWide ? "1u" : "4u";
 
   const std::uint32_t lanes = device.info().subgroupSize;
-  const Defines common = {
-      {"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
-      {"SMALL_SUBGROUP", lanes < 32 ? "1" : "0"},
-      {"TARGET_FORMAT", targetFormat},
-      {"HAS_OPAQUE", hasOpaque ? "1" : "0"},
-      {"HAS_IRREGULAR", hasIrregular ? "1" : "0"},
-      {"HAS_TEXTURES", hasTextures(scene) ? "1" : "0"},
-      {"HAS_GRADIENTS", hasGradients(scene) ? "1" : "0"},
-      {"HAS_ATTRIBUTES", hasAttributes(scene) ? "1" : "0"},
-      {"HAS_SMOOTH", isSmooth(scene) ? "1" : "0"},
-      {"HAS_THRESHOLD", parameters.real("alpha_threshold") > 0.0 ? "1" : "0"},
-      {"UNIFORM_CONTROL_FLOW", device.hasSubgroupUniformControlFlow() ? "1" : "0"},
-      {"VERIFY_LOOPS", verifiesLoops(device) ? "1" : "0"}};
   // `lanes` of a subgroup where the program counts on it; 0: any.
   auto program = [&device](const char* file, const Defines& defines, std::uint32_t lanes = 0) {
     return Program([=, &device] { return Pipeline::compute(device, file, defines, {}, lanes); });
@@ -74,6 +69,17 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
     for (const auto& [name, value] : more) defines[name] = value;
     return defines;
   };
+  const Defines team = teamDefines(device);
+  const Defines common =
+      with(team, {{"TARGET_FORMAT", targetFormat},
+                  {"HAS_OPAQUE", hasOpaque ? "1" : "0"},
+                  {"HAS_IRREGULAR", hasIrregular ? "1" : "0"},
+                  {"HAS_TEXTURES", hasTextures(scene) ? "1" : "0"},
+                  {"HAS_GRADIENTS", hasGradients(scene) ? "1" : "0"},
+                  {"HAS_ATTRIBUTES", hasAttributes(scene) ? "1" : "0"},
+                  {"HAS_SMOOTH", isSmooth(scene) ? "1" : "0"},
+                  {"HAS_THRESHOLD", parameters.real("alpha_threshold") > 0.0 ? "1" : "0"},
+                  {"VERIFY_LOOPS", verifiesLoops(device) ? "1" : "0"}});
   // Programs that differ in nothing are made once for all scenes.
   auto only = [&common](std::initializer_list<const char*> names) {
     Defines defines;
@@ -92,10 +98,9 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   };
   auto sort = [&](const std::string& kind, const char* teams) {
     return program("lucid/sort_lists.comp",
-                   with(only({"SUBGROUP_SIZE", "SMALL_SUBGROUP", "UNIFORM_CONTROL_FLOW"}),
-                        {{"HIGH", kind == "high" ? "1" : "0"},
-                         {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
-                         {"TEAMS", teams}}),
+                   with(team, {{"HIGH", kind == "high" ? "1" : "0"},
+                               {"LIST", kind == "high" ? "HIGH_LIST" : "LOW_LIST"},
+                               {"TEAMS", teams}}),
                    lanes);
   };
   // A workgroup a part of a bin. On a CPU a large one is no faster.

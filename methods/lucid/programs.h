@@ -14,6 +14,9 @@ namespace oitlab::lucid {
 /// llvmpipe ends long loops early and in silence: there the turns are counted.
 bool verifiesLoops(const Device& device);
 
+/// The macros that lucid/team.glsl needs, for this device.
+Defines teamDefines(const Device& device);
+
 /// A program that is made when it is first asked for: many frames need few of them, and drivers
 /// take their time (llvmpipe seconds).
 class Program {

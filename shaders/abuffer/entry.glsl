@@ -35,18 +35,28 @@ Entry noEntry() {
   return entry;
 }
 
+// HELPERS: the shader has helper invocations. llvmpipe (Mesa 25.0.7) ends a loop when only helper invocations are
+// left in it. A helper's array may then hold entries that were never loaded.
+uint nodeOf(Entry entry) {
+#ifdef HELPERS
+  return min(entry.node, push.capacity - 1u);
+#else
+  return entry.node;
+#endif
+}
+
 vec4 colorOf(Entry entry) {
 #ifdef LOCAL_COLOR
   return unpackColor(entry.color);
 #else
-  return unpackColor(push.nodes.at[entry.node].color);
+  return unpackColor(push.nodes.at[nodeOf(entry)].color);
 #endif
 }
 
 // The order of isInFront(); ids are fetched only for equal depths, which are rare.
 bool isBefore(Entry a, Entry b) {
   if (a.depth != b.depth || a.depth < 0.0) return a.depth > b.depth;
-  return isInFront(a.depth, push.nodes.at[a.node].id, b.depth, push.nodes.at[b.node].id);
+  return isInFront(a.depth, push.nodes.at[nodeOf(a)].id, b.depth, push.nodes.at[nodeOf(b)].id);
 }
 
 #endif

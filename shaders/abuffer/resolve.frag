@@ -1,7 +1,8 @@
 #version 460
-// The sort as a fragment shader, for the pixels that the stencil lets pass. Helper invocations stand in
-// for their neighbours in the quad and come here too: they store nothing, but they walk lists, which
-// may have become results (finish.glsl).
+// The sort as a fragment shader, for the pixels that pass the stencil test. Helper invocations for the other pixels
+// of a quad run this too. They store nothing, but they walk lists that may already hold results (finish.glsl), so
+// every address that they load from must lie in the buffer.
+#define HELPERS
 #include "abuffer/resolve.glsl"
 #include "common/pixel.glsl"
 

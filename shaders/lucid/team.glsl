@@ -14,11 +14,20 @@
 #define TEAM_MAIN
 #endif
 
-// What the team's lanes wrote to shared memory is there for the others. subgroupBarrier() would wait
-// for global memory and images too, which teams do not share.
+// Makes what the team's lanes wrote to shared memory visible to the whole team. subgroupBarrier() would also wait
+// for global memory and images, which teams do not share.
+//
+// SUBGROUP_BARRIER 0 is for llvmpipe, where a subgroup is one vector that runs in program order, so that its lanes
+// never wait for each other. There, a control barrier with subgroup scope acts as one with workgroup scope (Mesa
+// 25.0.7): the subgroups wait for each other, and when one of them ends, the others stop at their next barrier.
+// Teams reach different numbers of barriers, since their lists differ in length.
 void teamBarrier() {
+#if SUBGROUP_BARRIER
   controlBarrier(gl_ScopeSubgroup, gl_ScopeSubgroup, gl_StorageSemanticsShared,
                  gl_SemanticsAcquireRelease);
+#else
+  memoryBarrier(gl_ScopeSubgroup, gl_StorageSemanticsShared, gl_SemanticsAcquireRelease);
+#endif
 }
 
 // The same for all lanes, which compilers cannot tell.

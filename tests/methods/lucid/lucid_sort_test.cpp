@@ -4,6 +4,7 @@
 
 #include "gpu/barrier.h"
 #include "lucid/lucid_types.h"
+#include "lucid/programs.h"
 #include "support/gpu.h"
 #include "util/random.h"
 
@@ -12,19 +13,18 @@ namespace {
 
 class LucidSortGpu : public GpuTest {};
 
-/// The order in which sort_lists.comp leaves lists with these depths.
+/// The order in which sort_lists.comp leaves lists with these depths, with `teams` lists per
+/// workgroup.
 std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<float>>& lists,
-                                                 bool high, bool registers) {
+                                                 bool high, bool registers, unsigned teams) {
   const Device& device = sharedDevice();
-  const std::uint32_t lanes = device.info().subgroupSize;
-  const Pipeline pipeline = Pipeline::compute(device, "lucid/sort_lists.comp",
-                                              {{"SUBGROUP_SIZE", std::to_string(lanes) + "u"},
-                                               {"SMALL_SUBGROUP", registers ? "0" : "1"},
-                                               {"UNIFORM_CONTROL_FLOW", "0"},
-                                               {"HIGH", high ? "1" : "0"},
-                                               {"LIST", high ? "HIGH_LIST" : "LOW_LIST"},
-                                               {"TEAMS", "1u"}},
-                                              {}, lanes);
+  Defines defines = lucid::teamDefines(device);
+  defines["SMALL_SUBGROUP"] = registers ? "0" : "1";
+  defines["HIGH"] = high ? "1" : "0";
+  defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
+  defines["TEAMS"] = fmt::format("{}u", teams);
+  const Pipeline pipeline =
+      Pipeline::compute(device, "lucid/sort_lists.comp", defines, {}, device.info().subgroupSize);
   std::vector<float> keys;
   std::vector<lucid::HalfBlock> blocks;
   for (const auto& list : lists) {
@@ -82,6 +82,8 @@ void expectFrontToBack(const std::vector<float>& depths, const std::vector<std::
     ASSERT_GE(depths[order[i - 1]], depths[order[i]] - step) << "rank " << i;
 }
 
+// Lists of different lengths lie side by side, so that the teams of a workgroup reach different
+// numbers of barriers.
 TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
   const std::uint32_t lanes = sharedDevice().info().subgroupSize;
   Pcg32 random(7);
@@ -89,9 +91,12 @@ TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
     const char* name;
     bool high, registers;
     std::uint32_t most;
-  } sorts[] = {{"in registers", false, true, 16 * lanes},
-               {"in shared memory", false, false, LOW_LIST},
-               {"long lists", true, false, HIGH_LIST}};
+    unsigned teams;
+  } sorts[] = {{"in registers", false, true, 16 * lanes, 1},
+               {"in registers, side by side", false, true, 16 * lanes, 4},
+               {"in shared memory", false, false, LOW_LIST, 1},
+               {"in shared memory, side by side", false, false, LOW_LIST, 4},
+               {"long lists", true, false, HIGH_LIST, 1}};
   for (const auto& sort : sorts) {
     SCOPED_TRACE(sort.name);
     std::vector<std::vector<float>> lists;
@@ -102,7 +107,7 @@ TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
       lists.push_back(depths);
     }
     lists.push_back(std::vector<float>(sort.most, 0.5f));  // all equal
-    const auto orders = ordersOf(lists, sort.high, sort.registers);
+    const auto orders = ordersOf(lists, sort.high, sort.registers, sort.teams);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       SCOPED_TRACE(fmt::format("{} of them", lists[i].size()));
       expectFrontToBack(lists[i], orders[i]);
