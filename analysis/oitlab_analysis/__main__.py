@@ -37,6 +37,8 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
         "  report.md     the same, with relative links\n"
         "  cells.csv     one row per cell, every number of the report\n"
         "  plots/        the charts as PNG, SVG and PDF\n\n"
+        "example: how the error of depth peeling falls with its layers, a panel for each scene:\n"
+        "  oitlab report results/classic --x layers --y rmse --per scene\n\n"
         "exit codes:\n"
         "  0  done\n"
         "  1  done, but some cells failed\n"
@@ -51,6 +53,17 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
                         help="error of the quality-against-speed charts (default rmse)")
     report.add_argument("--all-charts", action="store_true",
                         help="draw every chart, however many there are")
+    own = report.add_argument_group(
+        "a chart of your own", "Lines over any parameter, for what else differs: the second chart of each section, and\n"
+        "plots/curve-*. NAME is a parameter (layers), opacity, detail, triangles, pixels, path (the place\n"
+        "on a camera path), time, ratio, memory, an error as above, a stage (sort), a counter\n"
+        "(fragments), or any column of cells.csv.")
+    own.add_argument("--x", metavar="NAME", help="what lies on the x axis")
+    own.add_argument("--y", metavar="NAME", default="time", help="what lies on the y axis (default time)")
+    own.add_argument("--per", metavar="NAME", default="",
+                     help="a panel for each scene, method, view, size, setting, or value of a parameter")
+    own.add_argument("--base", metavar="VALUE", help="relate y to that at this value of x (times: of paired blocks)")
+    own.add_argument("--only", metavar="METHOD", default="", help="cells of this method only")
 
     diff = add(
         "diff",
@@ -116,9 +129,16 @@ def run_histogram(source: Path, target: Path) -> int:
 
 
 def run_report(options: argparse.Namespace) -> tuple[str, int]:
+    from .draw.curves import Curve
+    from .read.sources import BadResults
     from .write.report import make_report
 
-    result = make_report(options.results, options.out, options.metric, options.all_charts)
+    curves = ()
+    if options.x:
+        curves = (Curve(options.x, options.y, options.per, options.only, options.base),)
+    elif options.per or options.base or options.only:
+        raise BadResults("--per, --base and --only are of a chart that --x asks for")
+    result = make_report(options.results, options.out, options.metric, options.all_charts, curves)
     return "\n".join([result.text, *map(str, result.files)]), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 

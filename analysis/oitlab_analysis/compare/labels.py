@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pandas
 
-from ..formats import is_number, natural_key, number, parameter
+from ..formats import is_number, natural_key, parameter
 
 SCENE_KNOBS = ("opacity", "detail", "content_hash")
 
@@ -47,6 +47,17 @@ def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
     return result
 
 
+def local_labels(table: pandas.DataFrame) -> list[str]:
+    """Labels of the methods by what differs among these rows alone; those of the table where two of
+    these would be alike."""
+    varying = varying_parameters(table)
+    labels = []
+    for row in records(table):
+        chosen = {k: v for k, v in parameters_of(row).items() if k in varying[row["method"]]}
+        labels.append(row["method"] + (f" ({parameter_text(chosen)})" if chosen else ""))
+    return labels if len(set(labels)) == len(labels) else table["label"].tolist()
+
+
 def scene_label(row: dict, knobs: list[str]) -> str:
     """`tree`, or `tree (opacity=0.3)` where the scene was run in more than one way."""
     parts = []
@@ -55,7 +66,7 @@ def scene_label(row: dict, knobs: list[str]) -> str:
         if knob == "content_hash":
             parts.append(str(value)[:8] if is_given(value) else "content unknown")
         elif is_number(value):
-            parts.append(f"{knob}={number(value)}")
+            parts.append(f"{knob}={parameter(float(value))}")
         else:
             parts.append(f"{knob} as modelled" if knob == "opacity" else f"{knob} not given")
     return f"{row['scene']} ({', '.join(parts)})" if parts else row["scene"]

@@ -21,7 +21,7 @@ class Metric:
 
 
 def column(table: pandas.DataFrame, name: str) -> numpy.ndarray:
-    """A column of numbers; NaN where it is missing."""
+    """A column of numbers; NaN where it is missing or no number."""
     if name not in table:
         return numpy.full(len(table), numpy.nan)
     return pandas.to_numeric(table[name], errors="coerce").to_numpy(dtype=float)
@@ -37,6 +37,11 @@ def wrong_order(table: pandas.DataFrame) -> numpy.ndarray:
     """The share of pixels that were blended in the wrong order, by the method's own count."""
     invalid, repaired = column(table, "counter.invalid_pixels"), column(table, "counter.repaired_pixels")
     return (invalid - numpy.nan_to_num(repaired)) / (column(table, "width") * column(table, "height"))
+
+
+def wrong_order_found(table: pandas.DataFrame) -> numpy.ndarray:
+    """The share of pixels that were in the wrong order before any was repaired."""
+    return column(table, "counter.invalid_pixels") / (column(table, "width") * column(table, "height"))
 
 
 METRICS = {

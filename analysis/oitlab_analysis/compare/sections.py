@@ -32,6 +32,10 @@ class Section:
     commands: list[str]
     cells: dict[str, dict]  # the measured ones, by key
 
+    @property
+    def is_cpu(self) -> bool:
+        return self.table["device_type"].iloc[0] == "cpu"
+
     def settings(self) -> list[tuple[str, pandas.DataFrame]]:
         """The cells of each setting, in the order of the table."""
         return self._settings

@@ -3,7 +3,7 @@ from cells of the methods `abuffer` and `local_memory` (experiments/bma.toml).
 
 Every function takes the tidy table (`cells.as_table`) of one section, that is of one device, build
 and commit, and returns a table, a figure, or None where the table does not have the cells. OIT is the
-paper's word for one shader with room for `Max alloc` fragments a pixel (sort_memory = max), BMA-OIT
+paper's word for one shader with room for `Max alloc` fragments of a pixel (sort_memory = max), BMA-OIT
 for a shader an interval. Times in ms are medians; speed-ups are their ratios, above 1 where BMA-OIT
 is faster. What the paper printed stands in paper/published.
 """
@@ -16,6 +16,8 @@ import matplotlib
 import pandas
 from matplotlib.figure import Figure
 
+from .style import COLOURS, GRID, MARKERS, PAGE, STYLE
+
 # Scene -> the paper's name of what it stands in for.
 PAPER_SCENES = {"sponza_like": "Atrium", "smoke": "Smoke", "powerplant": "Power Plant"}
 INTERVALS = (8, 16, 32, 64, 128, 256, 512, 1024)
@@ -24,13 +26,9 @@ SETTING = ["scene", "view", "width", "height"]
 PAPER_CHOICES = {"sort": "auto", "mask": "stencil", "deep": "exact", "on_overflow": "grow",
                  "node_color": "rgba32f", "local": "keys"}
 SORTS = ("insertion", "merge", "shell", "bitonic", "register")
-# Okabe and Ito's, as in the other charts; intervals go from light to dark.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+# Intervals go from light to dark.
 SHADES = ("#e8eef2", "#cfdde6", "#b0c7d6", "#8dafc4", "#6893b0", "#457899", "#275d80", "#0e4060",
           "#04263d")
-MARKERS = ("o", "s", "^", "D", "v")
-STYLE = {"font.family": "DejaVu Sans", "font.size": 9, "svg.hashsalt": "oitlab",
-         "text.parse_math": False}
 
 
 def _drawn(draw):
@@ -48,13 +46,13 @@ def bma_figure3(table: pandas.DataFrame) -> Figure | None:
     cells = _measured(table, "local_memory", "size", "passes")
     if cells.empty:
         return None
-    figure, axes = _figure(cells)
+    figure, axes = _figure()
     for index, (passes, same) in enumerate(cells.groupby("param.passes")):
         same = same.sort_values("param.size")
-        axes.plot(same["param.size"] * 16, same["frame_ms.median"], color=COLOURS[index % 5],
-                  marker=MARKERS[index % 5], markersize=4, linewidth=1,
+        axes.plot(same["param.size"] * 16, same["frame_ms.median"], color=COLOURS[index % len(COLOURS)],
+                  marker=MARKERS[index % len(MARKERS)], markersize=4, linewidth=1,
                   label=f"{passes:g} full-screen passes")
-    axes.set_xlabel("local memory a thread, bytes")
+    axes.set_xlabel("local memory of a thread, bytes")
     axes.set_ylabel("frame time, ms")
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
@@ -73,7 +71,7 @@ def bma_figure5(table: pandas.DataFrame) -> Figure | None:
                if any(rows.iloc[0].get(_pixels(i), 0) > 0 for i in INTERVALS)]
     if not counted:
         return None
-    figure, axes = _figure(pandas.DataFrame([row for _, row in counted]), times=False)
+    figure, axes = _figure()
     most = max(i for i in INTERVALS for _, row in counted if row.get(_pixels(i), 0) > 0)
     shown = [interval for interval in INTERVALS if interval <= most]
     width = 0.8 / len(counted)
@@ -81,12 +79,12 @@ def bma_figure5(table: pandas.DataFrame) -> Figure | None:
     for index, ((scene, view, *_), row) in enumerate(counted):
         places = [i + (index - (len(counted) - 1) / 2) * width for i in range(len(shown))]
         axes.bar(places, [row.get(_pixels(i), 0) for i in shown], width,
-                 color=COLOURS[index % 5], edgecolor="black", linewidth=0.5,
+                 color=COLOURS[index % len(COLOURS)], edgecolor="black", linewidth=0.5,
                  label=scene_name(scene) + ("" if scenes.count(scene) == 1 else f", {view}"))
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")  # powers would need parse_math
     axes.set_xticks(range(len(shown)), [_range(i) for i in shown])
-    axes.set_xlabel("fragments a pixel")
+    axes.set_xlabel("fragments of a pixel")
     axes.set_ylabel("pixels")
     axes.legend(frameon=False)
     return figure
@@ -109,7 +107,7 @@ def bma_figure7(table: pandas.DataFrame) -> Figure | None:
     counted = bma if not bma.empty else oit
     if len(counted) < 2:
         return None
-    figure, axes = _figure(cells, rows=2)
+    figure, axes = _figure(rows=2)
     times, deep = axes
     shown = [i for i in INTERVALS if _pixels(i) in counted and counted[_pixels(i)].sum() > 0]
     pixels = times.twinx()
@@ -164,14 +162,14 @@ def bma_figure9(table: pandas.DataFrame) -> Figure | None:
     shown = [i for i in timed_intervals(base) if base[f"stage.sort {i}_ms"] > 0]
     if not shown:
         return None
-    figure, axes = _figure(rows)
+    figure, axes = _figure()
     for index, sort in enumerate(sorts):
         times = [rows.loc[sort].get(f"stage.sort {i}_ms") for i in shown]
         axes.plot(range(len(shown)), [t / base[f"stage.sort {i}_ms"] for t, i in zip(times, shown)],
                   color=COLOURS[index], marker=MARKERS[index], markersize=5, label=sort)
     axes.set_title(scene_name(scene), loc="left", size=9, weight="bold")
     axes.set_xticks(range(len(shown)), [_range(i) for i in shown])
-    axes.set_xlabel("fragments a pixel")
+    axes.set_xlabel("fragments of a pixel")
     axes.set_ylabel("time, relative to insertion sort")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1.06), ncol=len(sorts))  # above the title
@@ -222,17 +220,12 @@ def scene_name(scene: str) -> str:
     return f"{scene} ({PAPER_SCENES[scene]})" if scene in PAPER_SCENES else scene
 
 
-def _figure(cells: pandas.DataFrame, rows: int = 1, times: bool = True):
-    """A figure and its axes, with what was measured on beneath them: figures get copied around."""
-    figure = Figure(figsize=(7, 3.6 if rows == 1 else 5.5), layout="constrained")
+def _figure(rows: int = 1):
+    """A figure and its axes."""
+    figure = Figure(figsize=(PAGE, 3.6 if rows == 1 else 5.5), layout="constrained")
     axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 2)[:rows] if rows > 1 else None)
     for each in axes if rows > 1 else [axes]:
         each.spines[["top", "right"]].set_visible(False)
-        each.grid(axis="y", color="#dddddd", linewidth=0.6)
+        each.grid(axis="y", **GRID)
         each.set_axisbelow(True)
-    first = cells.iloc[0]
-    text = f"{first['device']}, {first['width']}×{first['height']}, commit {first['commit']}"
-    if times and first["device_type"] == "cpu":
-        text += "\nCPU device: these times say nothing about GPUs"
-    figure.supxlabel(text, size=7, color="#555555")
     return figure, axes

@@ -1,4 +1,4 @@
-"""Which charts a report has, and saving them. What they show is in `scatter`, `sweeps` and `bars`."""
+"""Which charts a report has, in which order and how many, and saving them."""
 
 from __future__ import annotations
 
@@ -12,46 +12,34 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from . import bars, bma_figures, curves, quality_speed
 from ..compare.metrics import METRICS
 from ..compare.sections import Section
-from .style import STYLE, Chart, save
+from . import bma_figures, curves, dots, quality_speed, stacks
+from .curves import ALPHA_THRESHOLD, DEPTH_FILTER, Curve
+from .style import STYLE, Chart, footnotes, hints_of, save
 
-# A chart takes 0.3 to 1 s in its three formats. Beyond this many the page shows the first of each
-# kind, and --all-charts the rest.
-MOST_CHARTS = 10
+# A chart takes 0.3 to 1 s in its three formats. A section has its first chart in any case, then more
+# as far as both numbers allow; --all-charts draws the rest.
+PER_SECTION = 6
+IN_ALL = 18
+MOST_SECTIONS = 40  # sections with a chart: a report of more is a list of tables
 FEW_CHARTS = 4
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of chart: its caption, how many pages a section takes, and how one is drawn."""
+    """A kind of chart: its caption, how many a section takes, and how one is drawn."""
 
     caption: str
-    pages: Callable[[Section], int]
+    pages: Callable[[Section, str], int]
     draw: Callable[[Section, int, str], Figure | None]
 
 
-def _paginated(draw: Callable) -> Callable[[Section, int, str], Figure | None]:
-    return lambda section, page, metric: draw(section, bars.paginate(section)[page])
+def _curves(caption: str, asked: tuple[Curve, ...]) -> Kind:
+    pages = curves.pages(asked)
+    return Kind(caption, lambda section, metric: pages(section),
+                lambda section, page, metric: curves.draw_curves(section, asked, page))
 
-
-def _bar_pages(section: Section) -> int:
-    return len(bars.paginate(section))
-
-
-# In the order of the page.
-KINDS = {
-    "quality-speed": Kind(quality_speed.OVERALL_CAPTION, lambda section: 1, quality_speed.draw_overall),
-    "quality-speed-scenes": Kind(quality_speed.CAPTION, quality_speed.pages, quality_speed.draw_scenes),
-    "depth-filter": Kind(curves.DEPTH_FILTER_CAPTION, curves.pages("lucid", "depth_filter"),
-                         curves.draw_depth_filter),
-    "alpha-threshold": Kind(curves.ALPHA_CAPTION, curves.pages("lucid", "alpha_threshold"),
-                            curves.draw_alpha_threshold),
-    "frame-times": Kind(bars.FRAME_CAPTION, _bar_pages, _paginated(bars.draw_frame_times)),
-    "stages": Kind(bars.STAGE_CAPTION, _bar_pages, _paginated(bars.draw_stages)),
-    "memory": Kind(bars.MEMORY_CAPTION, _bar_pages, _paginated(bars.draw_memory)),
-}
 
 BMA_CAPTIONS = {
     3: "Frame time against local memory of a shader that hardly uses it.",
@@ -61,26 +49,38 @@ BMA_CAPTIONS = {
 }
 
 
-def _is_of_bma(section: Section) -> int:
-    """Figures of a paper mean something for the experiment that repeats it, and for no other."""
-    return int(section.context["Experiment"] == "bma")
-
-
 def _bma_figure(number: int) -> Kind:
-    """The counterpart of a figure of Knowles et al. 2013."""
+    """The counterpart of a figure of Knowles et al. 2013, which means something for the experiment
+    that repeats it, and for no other."""
     draw = getattr(bma_figures, f"bma_figure{number}")
-    return Kind(BMA_CAPTIONS[number] + f" After figure {number} of Knowles et al. 2013.", _is_of_bma,
+    return Kind(BMA_CAPTIONS[number] + f" After figure {number} of Knowles et al. 2013.",
+                lambda section, metric: int(section.context["Experiment"] == "bma"),
                 lambda section, page, metric: draw(section.table))
 
 
-KINDS |= {f"bma-figure{number}": _bma_figure(number) for number in BMA_CAPTIONS}
+# In the order of the page: the first that a section has is the one that stands above its table.
+KINDS = {
+    "quality-speed": Kind(quality_speed.OVERALL_CAPTION, quality_speed.has_overall, quality_speed.draw_overall),
+    "quality-speed-scenes": Kind(quality_speed.CAPTION, quality_speed.pages, quality_speed.draw_scenes),
+    "depth-filter": _curves(
+        "Depth filter of `lucid`: pixels that come out in the wrong order without repair, and frame time "
+        "against that with a filter of 3 (intervals: 95%, of paired blocks).", DEPTH_FILTER),
+    "alpha-threshold": _curves(
+        "Alpha threshold of `lucid`: speed-up against shading every sample (intervals: 95%, of paired "
+        "blocks).", ALPHA_THRESHOLD),
+    "frame-times": Kind(dots.CAPTION, lambda section, metric: dots.pages(section), dots.draw_frame_times),
+    "stages": Kind(stacks.STAGE_CAPTION, lambda section, metric: stacks.stage_pages(section), stacks.draw_stages),
+    "memory": Kind(stacks.MEMORY_CAPTION, lambda section, metric: stacks.memory_pages(section),
+                   stacks.draw_memory),
+} | {f"bma-figure{number}": _bma_figure(number) for number in BMA_CAPTIONS}
 
 
 @dataclass(frozen=True)
 class Task:
     section: Section
     number: int  # of the section, from 1
-    kind: str
+    name: str  # of the kind
+    kind: Kind
     page: int
     pages: int
 
@@ -88,55 +88,80 @@ class Task:
 _tasks: list[Task] = []  # what the processes of the pool inherit, instead of copies of every section
 
 
-def save_charts(
-    sections: list[Section], folder: Path, metric: str = "rmse", everything: bool = False
-) -> tuple[list[list[Chart]], int]:
+def kinds_with(asked: tuple[Curve, ...]) -> dict[str, Kind]:
+    """All kinds of charts, the curves that the user asked for right after quality against speed."""
+    kinds = dict(list(KINDS.items())[:2])
+    kinds |= {f"curve-{curve.name}": _curves(curve.caption(), (curve,)) for curve in asked}
+    return kinds | KINDS
+
+
+def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> list[list[Task]]:
+    """Every chart that each section could have, in the order of their worth: the first of each kind,
+    then the second ones."""
+    kinds = kinds_with(asked)
+    found = []
+    for number, section in enumerate(sections, 1):
+        own = []
+        if (section.table["status"] == "ok").any():
+            for name, kind in kinds.items():
+                count = kind.pages(section, metric)
+                own += [Task(section, number, name, kind, page, count) for page in range(count)]
+        found.append(sorted(own, key=lambda task: task.page))
+    return found
+
+
+def choose(tasks: list[list[Task]], everything: bool = False) -> list[Task]:
+    """The charts that are drawn: one for each section, then the second of each, while there is room."""
+    if everything:
+        return [task for own in tasks for task in own]
+    chosen = [own[0] for own in tasks[:MOST_SECTIONS] if own]
+    for place in range(1, PER_SECTION):
+        chosen += [own[place] for own in tasks[:MOST_SECTIONS] if len(own) > place][:max(0, IN_ALL - len(chosen))]
+    return chosen
+
+
+def save_charts(sections: list[Section], folder: Path, metric: str = "rmse", everything: bool = False,
+                asked: tuple[Curve, ...] = ()) -> tuple[list[list[Chart]], int]:
     """Draws the charts of each section; long ones are spread over several files.
 
     Returns them by section, and how many were left out because there are too many.
     """
     global _tasks
     folder.mkdir(exist_ok=True)
-    for kind in KINDS:  # those of an earlier report would be taken for charts of this one
+    for kind in (*KINDS, "curve-*"):  # those of an earlier report would be taken for charts of this one
         for old in folder.glob(f"{kind}-[0-9]*"):
             old.unlink()
-    tasks = [
-        Task(section, number, kind, page, kinds.pages(section))
-        for number, section in enumerate(sections, 1)
-        if (section.table["status"] == "ok").any()
-        for kind, kinds in KINDS.items()
-        for page in range(kinds.pages(section))
-    ]
-    left_out = 0
-    if not everything and len(tasks) > MOST_CHARTS:
-        # The first page of every kind and section, then the second ones, as far as they go.
-        chosen = {id(task) for task in sorted(tasks, key=lambda task: task.page)[:MOST_CHARTS]}
-        left_out = len(tasks) - len(chosen)
-        tasks = [task for task in tasks if id(task) in chosen]
-    _tasks = tasks
-    arguments = (range(len(tasks)), [folder] * len(tasks), [metric] * len(tasks))
-    workers = min(len(os.sched_getaffinity(0)), len(tasks))
-    if len(tasks) > FEW_CHARTS and workers > 1:  # matplotlib does not run in threads
+    possible = tasks_of(sections, metric, asked)
+    order = list(kinds_with(asked))
+    _tasks = sorted(choose(possible, everything), key=lambda t: (t.number, order.index(t.name), t.page))
+    arguments = (range(len(_tasks)), [folder] * len(_tasks), [metric] * len(_tasks))
+    workers = min(len(os.sched_getaffinity(0)), len(_tasks))
+    if len(_tasks) > FEW_CHARTS and workers > 1:  # matplotlib does not run in threads
         with ProcessPoolExecutor(workers, multiprocessing.get_context("fork")) as pool:
             charts = list(pool.map(_save_chart, *arguments))
     else:
         charts = list(map(_save_chart, *arguments))
-    by_section = [
-        [chart for task, chart in zip(tasks, charts) if chart and task.section is section]
-        for section in sections
-    ]
-    return by_section, left_out
+    by_section: list[list[Chart]] = [[] for _ in sections]
+    for task, chart in zip(_tasks, charts):
+        if chart:
+            by_section[task.number - 1].append(chart)
+    return by_section, sum(map(len, possible)) - len(_tasks)
 
 
 def _save_chart(index: int, folder: Path, metric: str) -> Chart | None:
     task = _tasks[index]
-    kind = KINDS[task.kind]
     with matplotlib.rc_context(STYLE):
-        figure = kind.draw(task.section, task.page, metric)
+        figure = task.kind.draw(task.section, task.page, metric)
         if figure is None:
             return None
-        name = f"{task.kind}-{task.number}" + (f"-{task.page + 1}" if task.pages > 1 else "")
-        save(figure, folder / name)
-    part = f" Chart {task.page + 1} of {task.pages}." if task.pages > 1 else ""
-    words = {"metric": METRICS[metric].label, "settings": len(task.section.settings())}
-    return Chart(name, kind.caption.format(**words) + part)
+        name = f"{task.name}-{task.number}" + (f"-{task.page + 1}" if task.pages > 1 else "")
+        words = {"metric": METRICS[metric].label,
+                 "settings": quality_speed.settings_in(task.section, METRICS[metric])}
+        part = f" Chart {task.page + 1} of {task.pages}." if task.pages > 1 else ""
+        said = task.kind.caption
+        for word, text in words.items():  # not format(): a caption may hold what a user typed
+            said = said.replace(f"{{{word}}}", str(text))
+        caption = f"{said}{part} {footnotes(task.section)}"
+        hints = hints_of(figure)
+        save(figure, folder / name, caption)
+    return Chart(name, caption, hints)

@@ -1,7 +1,7 @@
 """Quality against speed: what an error costs, per scene and over all of them.
 
-One colour a method, one marker a variant of it; bars are the 95% intervals of the times. Errors are
-on a log axis; images without any stand on its lower end, which is marked.
+One colour for each method, one marker for each variant of it; bars are the 95% intervals of the times.
+Errors are on a log axis; images without any stand on its lower end, which is marked.
 """
 
 from __future__ import annotations
@@ -13,18 +13,20 @@ import pandas
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, NullFormatter
 
 from .. import formats
 from ..compare.device_notes import NOTED
 from ..compare.metrics import METRICS, Metric
 from ..compare.sections import Section
-from .style import COLUMN, MARKERS, PAGE, method_colours, source_line
+from .layout import log_axis, mark_beyond, panel_grid, place_labels, robust_limit
+from .style import MARKERS, mark_point, method_looks
 
 PANELS_PER_CHART = 12
 PANEL_COLUMNS = 3
-LEGEND_CHARACTERS = 100  # of a row, at the width of a page
 MOST_VARIANTS_NAMED = 5
+MOST_BARS = 24  # points with intervals in one panel: more are a smear
+LABEL_CHARACTERS = 20
 FRONT = {"color": "black", "linewidth": 0.9, "linestyle": "--", "zorder": 1}
 CAPTION = (
     "{metric} against frame time, per scene. Less is better on both axes; the dashed line joins what "
@@ -52,9 +54,9 @@ def pareto_front(times: numpy.ndarray, errors: numpy.ndarray) -> list[int]:
     return front
 
 
-def pages(section: Section) -> int:
-    """How many charts the settings of a section take; at least one."""
-    return max(1, -(-len(section.settings()) // PANELS_PER_CHART))
+def pages(section: Section, metric: str = "rmse") -> int:
+    """How many charts the scored settings of a section take."""
+    return -(-scored(section, METRICS[metric])["setting"].nunique() // PANELS_PER_CHART)
 
 
 def scored(section: Section, metric: Metric) -> pandas.DataFrame:
@@ -71,133 +73,29 @@ def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
     groups = groups[page * PANELS_PER_CHART:(page + 1) * PANELS_PER_CHART]
     if not groups:
         return None
-    floor = error_floor(table["error"])
-    rows = -(-len(groups) // PANEL_COLUMNS)
-    height = 1.75 * rows + 0.45  # inches, as all below; a layout engine would take a second
-    figure = Figure(figsize=(PAGE, height))
-    grid = figure.subplots(rows, PANEL_COLUMNS, squeeze=False, sharey=True)
-    figure.subplots_adjust(left=0.65 / PAGE, right=1 - 0.1 / PAGE, bottom=0.65 / height,
-                           top=1 - 0.25 / height, wspace=0.12, hspace=0.4)
-    for axes in grid.flat[len(groups):]:
-        axes.remove()
-    looks = looks_of(table)
-    for axes, (setting, cells) in zip(grid.flat, groups):
-        _draw_panel(axes, cells, looks, floor)
-        axes.set_title(textwrap.shorten(setting, 34), size=8, loc="left")
-        set_error_axis(axes, metric, table["error"], floor)
-    for axes in grid[:, 0]:
-        axes.set_ylabel(metric.label, size=8)
-    figure.supxlabel("frame time, ms (log scale)\n" + textwrap.fill(source_line(section), 110),
-                     size=7.5, y=0)
-    _legend(figure, table, looks)
+    floor, looks = error_floor(table["error"]), looks_of(table)
+    alone = len(groups) == 1
+    columns = 1 if alone else 2 if len(groups) in (2, 4) else PANEL_COLUMNS
+    height = 3.2 if alone else 2.2 if len(groups) <= 4 else 1.55
+    figure, all_axes = panel_grid([setting for setting, _ in groups], columns, height, _handles(table, looks))
+    for index, (axes, (_, cells)) in enumerate(zip(all_axes, groups)):
+        times = cells["frame_ms.median"].to_numpy(dtype=float)
+        ends = [cells[f"frame_ms.ci_{end}"].to_numpy(dtype=float) for end in ("low", "high")]
+        _draw_points(axes, cells, times, ends, looks, floor, metric, table["error"], not alone)
+        if index % columns == 0:
+            axes.set_ylabel(metric.label, size=8)
+        else:
+            axes.tick_params(labelleft=False)
+        if index + columns >= len(groups):
+            axes.set_xlabel("frame time, ms (log scale)", size=8)
     return figure
 
 
-def _draw_panel(axes: Axes, cells: pandas.DataFrame, looks: dict, floor: float) -> None:
-    errors = numpy.maximum(cells["error"].to_numpy(), floor)
-    times = cells["frame_ms.median"].to_numpy()
-    low, high = (cells[f"frame_ms.ci_{end}"].to_numpy(dtype=float) for end in ("low", "high"))
-    colours = [looks[label]["color"] for label in cells["label"]]
-    axes.hlines(errors, low, high, colors=colours, linewidth=1.2, zorder=2)
-    _draw_points(axes, times, errors, cells["label"], looks)
-    _draw_front(axes, times, errors)
-    _set_time_axis(axes, times)
-    axes.tick_params(labelsize=7)
-    axes.grid(color="#e4e4e4", linewidth=0.5)
-    axes.spines[["top", "right"]].set_visible(False)
-
-
-def _draw_points(axes: Axes, times, errors, labels, looks: dict) -> None:
-    """All points of one look at once: a big sweep has few looks and many points."""
-    by_look: dict[tuple, list[int]] = {}
-    for index, label in enumerate(labels):
-        by_look.setdefault((looks[label]["color"], looks[label]["marker"]), []).append(index)
-    for (colour, marker), indices in by_look.items():
-        axes.plot(times[indices], errors[indices], linestyle="none", marker=marker, color=colour,
-                  markersize=5, markeredgecolor="black", markeredgewidth=0.4, zorder=3,
-                  clip_on=False)
-
-
-def _draw_front(axes: Axes, times: numpy.ndarray, errors: numpy.ndarray) -> None:
-    front = pareto_front(times, errors)
-    axes.step(times[front], errors[front], where="post", **FRONT)
-
-
-def _set_time_axis(axes: Axes, times: numpy.ndarray) -> None:
-    """Logarithmic, with plain numbers at few places, whatever the span."""
-    low, high = times.min() / 1.25, times.max() * 1.25
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
-    ticks = [t for t in LogLocator(subs=(1, 2, 5)).tick_values(low, high) if low <= t <= high]
-    if len(ticks) < 2:
-        ticks = numpy.linspace(times.min(), times.max(), 2) if times.max() > times.min() * 1.02 \
-            else [times.min()]
-    while len(ticks) > 4:
-        ticks = ticks[::2]
-    axes.xaxis.set_major_locator(FixedLocator(list(ticks)))
-    axes.xaxis.set_major_formatter(lambda value, _: f"{float(f'{value:.2g}'):g}")
-    axes.xaxis.set_minor_formatter(NullFormatter())
-
-
-def error_floor(errors: pandas.Series) -> float:
-    """Where images without error stand on the log axis: well below the least error there is."""
-    positive = errors[errors > 0]
-    return float(positive.min()) / 4 if len(positive) else 1e-4
-
-
-def set_error_axis(axes: Axes, metric: Metric, errors: pandas.Series, floor: float) -> None:
-    """Logarithmic, its lower end standing for no error."""
-    top = max(float(errors.max()), floor * 10)
-    axes.set_yscale("log")
-    axes.set_ylim(floor if (errors == 0).any() else floor * 2, top * 1.6)
-    decades = numpy.arange(numpy.floor(numpy.log10(floor)) , numpy.ceil(numpy.log10(top)) + 1)
-    ticks = [t for t in 10.0**decades if floor * 2 < t < top * 1.6]
-    ticks = ticks[:: max(1, len(ticks) // 5)] or [top]
-    if (errors == 0).any():
-        ticks = [floor, *ticks]
-    axes.yaxis.set_major_locator(FixedLocator(ticks))
-    axes.yaxis.set_major_formatter(
-        lambda error, _: metric.none if error <= floor * 1.01 else f"{metric.shown(error):.3g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())
-
-
-def looks_of(table: pandas.DataFrame) -> dict[str, dict]:
-    """Label -> colour of its method and marker of its variant."""
-    colours = method_colours(list(table["method"]))
-    pairs = table.drop_duplicates("label")[["method", "label"]].itertuples(index=False)
-    ordered = sorted(pairs, key=lambda p: (p.method != "blend", p.method, formats.natural_key(p.label)))
-    place = {method: i for i, method in enumerate(colours)}
-    seen: dict[str, int] = {}
-    looks = {}
-    for method, label in ordered:
-        variant = seen[method] = seen.get(method, -1) + 1
-        looks[label] = {"color": colours[method], "marker": MARKERS[(place[method] + variant) % len(MARKERS)],
-                        "method": method}
-    return looks
-
-
-def _legend(figure: Figure, table: pandas.DataFrame, looks: dict, columns: int | None = None) -> None:
-    """Every variant by name, or only the method where it has many; all above the axes."""
-    handles = []
-    for method in dict.fromkeys(look["method"] for look in looks.values()):
-        own = {label: look for label, look in looks.items() if look["method"] == method}
-        if len(own) > MOST_VARIANTS_NAMED:
-            first = next(iter(own.values()))
-            own = {f"{method} ({len(own)} variants)": first | {"marker": "s"}}
-        handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"],
-                           markersize=5, markeredgecolor="black", markeredgewidth=0.4, label=label)
-                    for label, look in own.items()]
-    handles.append(Line2D([], [], **FRONT, label="Pareto front"))
-    longest = max(len(handle.get_label()) for handle in handles)
-    columns = columns or max(1, min(len(handles), LEGEND_CHARACTERS // (longest + 5)))
-    figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.01, 1), ncol=columns, frameon=False, fontsize=7,
-                  handletextpad=0.4, columnspacing=1.2)
-
-
 def overall(section: Section, metric: Metric) -> pandas.DataFrame:
-    """One row for each variant that was scored and compared in every setting that has the baseline.
+    """One row for each variant that was measured in every setting that has a baseline like most.
 
-    The baseline is the method that most settings have for it, which is `blend` where there is one.
+    Ratios to different baselines must not be averaged: only settings count whose baseline is of the
+    method that most have for it, which is `blend` where there is one.
     Columns: label, method, error (mean), ratio (geometric mean), low, high (quartiles of the ratio),
     settings (how many). Variants that were not measured everywhere are left out: means over other
     sets of scenes say nothing beside these.
@@ -221,30 +119,142 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
         rows, columns=["label", "method", "error", "ratio", "low", "high", "settings"])
 
 
+def settings_in(section: Section, metric: Metric) -> int:
+    """Over how many settings overall() takes its means."""
+    table = overall(section, metric)
+    return 0 if table.empty else int(table["settings"].iloc[0])
+
+
+def has_overall(section: Section, metric: str = "rmse") -> int:
+    """1 where there are two settings and two variants or more to sum up, else 0."""
+    return int(len(overall(section, METRICS[metric])) >= 2 and settings_in(section, METRICS[metric]) >= 2)
+
+
 def draw_overall(section: Section, page: int, name: str) -> Figure | None:
-    """One point a variant, over all settings; None for fewer than two settings or variants."""
+    """One point for each variant, over all settings; None where has_overall() says 0."""
+    if not has_overall(section, name):
+        return None
     metric = METRICS[name]
     table = overall(section, metric)
-    if len(table) < 2 or table["settings"].iloc[0] < 2:
-        return None
     looks, floor = looks_of(table), error_floor(table["error"])
-    figure = Figure(figsize=(COLUMN + 0.6, 3.2), layout="constrained")
-    axes = figure.subplots()
-    errors, ratios = numpy.maximum(table["error"].to_numpy(), floor), table["ratio"].to_numpy()
-    axes.hlines(errors, table["low"], table["high"], zorder=2, linewidth=1.1,
-                colors=[looks[label]["color"] for label in table["label"]])
-    _draw_points(axes, ratios, errors, table["label"], looks)
-    _draw_front(axes, ratios, errors)
-    _set_time_axis(axes, numpy.concatenate([ratios, table["low"], table["high"]]))
-    set_error_axis(axes, metric, table["error"], floor)
-    axes.tick_params(labelsize=7.5)
-    axes.grid(color="#e4e4e4", linewidth=0.5)
-    axes.spines[["top", "right"]].set_visible(False)
+    figure, (axes,) = panel_grid([""], 1, 3.2, _handles(table, looks))
+    ratios, ends = table["ratio"].to_numpy(dtype=float), [table[end].to_numpy(dtype=float) for end in ("low", "high")]
+    _draw_points(axes, table, ratios, ends, looks, floor, metric, table["error"], False)
     axes.set_ylabel(f"{metric.label} (mean)", size=8)
-    # On the chart itself, because charts get copied around.
-    said = [note for note in dict.fromkeys(section.table["device_note"]) if note]
-    axes.set_xlabel("\n".join([f"time over that of the baseline{NOTED if said else ''} (log scale)",
-                               textwrap.fill(source_line(section), 60),
-                               *(textwrap.fill(f"{NOTED.strip()} {note}", 60) for note in said)]), size=7.5)
-    _legend(figure, table, looks, columns=2)
+    noted = NOTED if (section.table["device_note"] != "").any() else ""
+    axes.set_xlabel(f"time over that of the baseline{noted} (log scale)", size=8)
     return figure
+
+
+def _draw_points(axes: Axes, cells: pandas.DataFrame, times: numpy.ndarray, ends: list[numpy.ndarray],
+                 looks: dict, floor: float, metric: Metric, all_errors: pandas.Series, briefly: bool) -> None:
+    """Points with intervals, hints for the pointer, the front, and labels where they find room."""
+    errors = numpy.maximum(cells["error"].to_numpy(dtype=float), floor)
+    labels = cells["label"].tolist()
+    limit = robust_limit(times, log=True) or times.max()
+    shown = numpy.nan_to_num(numpy.concatenate([times, *ends]), nan=times.min())
+    log_axis(axes, "x", shown[shown > 0].min() / 1.15, max(limit, shown[shown <= limit].max()) * 1.25)
+    set_error_axis(axes, metric, all_errors, floor)
+    colours = [looks[label]["color"] for label in labels]
+    sure = [i for i in range(len(times)) if numpy.isfinite(ends[0][i])]
+    if sure and len(times) <= MOST_BARS:
+        axes.hlines(errors[sure], ends[0][sure], ends[1][sure], colors=[colours[i] for i in sure], linewidth=1.1,
+                    zorder=2)
+    inside = times <= limit
+    for index, label in enumerate(labels):
+        if inside[index]:
+            point, = axes.plot(times[index:index + 1], errors[index:index + 1], linestyle="none", markersize=5,
+                               markeredgecolor="black", markeredgewidth=0.4, zorder=3, clip_on=False,
+                               color=looks[label]["color"], marker=looks[label]["marker"])
+            mark_point(point, _hint(label, times[index], cells["error"].iloc[index], metric))
+    mark_beyond(axes, [(times[i], errors[i], f"{labels[i]}: {formats.number(times[i])}")
+                       for i in range(len(times)) if not inside[i]], "x", "black")
+    front = pareto_front(times, errors)
+    axes.step(times[front], errors[front], where="post", **FRONT)
+    wanted = [*front, *(i for i in range(len(times)) if i not in front)]
+    names = point_names(cells, wanted, briefly)
+    place_labels(axes, [(times[i], errors[i], names[i], colours[i]) for i in wanted if inside[i] and names[i]],
+                 5.8 if briefly else 6.5, _corners(times[front], errors[front]))
+
+
+def _corners(times: numpy.ndarray, errors: numpy.ndarray) -> list[tuple[float, float, float, float]]:
+    """The level and upright lines of the front, which is drawn in steps."""
+    level = [(times[i], errors[i], times[i + 1], errors[i]) for i in range(len(times) - 1)]
+    return level + [(times[i + 1], errors[i], times[i + 1], errors[i + 1]) for i in range(len(times) - 1)]
+
+
+def _hint(label: str, time: float, error: float, metric: Metric) -> str:
+    """What the pointer over a point shows."""
+    shown = metric.none if error == 0 else formats.number(metric.shown(error))
+    return f"{label}: {formats.number(time)}, {metric.label} {shown}"
+
+
+def point_names(cells: pandas.DataFrame, order: list[int], briefly: bool) -> list[str]:
+    """What stands at each point: its label, or where all are of one method what tells them apart. Where
+    labels are long, and `briefly`, it is the method, at the first of its points in this order."""
+    methods, labels = cells["method"].tolist(), cells["label"].tolist()
+    one = len(set(methods)) == 1
+    if one:
+        labels = [label.removeprefix(method).strip().removeprefix("(").removesuffix(")") or label
+                  for method, label in zip(methods, labels)]
+    names = ["\n".join(textwrap.wrap(label, LABEL_CHARACTERS, break_long_words=False)) for label in labels]
+    named = set()
+    for index in order:
+        if not one and (briefly or names[index].count("\n") > 1):
+            names[index] = "" if methods[index] in named else methods[index]
+            named.add(methods[index])
+    return names
+
+
+def error_floor(errors: pandas.Series) -> float:
+    """Where images without error stand on the log axis: well below the least error there is."""
+    positive = errors[errors > 0]
+    return float(positive.min()) / 4 if len(positive) else 1e-4
+
+
+def set_error_axis(axes: Axes, metric: Metric, errors: pandas.Series, floor: float) -> None:
+    """Logarithmic, its lower end standing for no error."""
+    none = bool((errors == 0).any())
+    top = max(float(errors.max()), floor * (10 if none else 5))
+    axes.set_yscale("log")
+    axes.set_ylim(floor if none else floor * 2.5, top * 1.6)
+    decades = numpy.arange(numpy.floor(numpy.log10(floor)), numpy.ceil(numpy.log10(top)) + 1)
+    ticks = [t for t in 10.0**decades if floor * 2 < t < top * 1.6]
+    ticks = ticks[:: max(1, len(ticks) // 5)]
+    if len(ticks) < 2 and not none:
+        ticks = [errors.min(), errors.max()] if errors.max() > 1.1 * errors.min() else [errors.max()]
+    if none:
+        ticks = [floor, *ticks]
+    axes.yaxis.set_major_locator(FixedLocator(ticks))
+    axes.yaxis.set_major_formatter(
+        lambda error, _: metric.none if error <= floor * 1.01 else f"{metric.shown(error):.3g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def looks_of(table: pandas.DataFrame) -> dict[str, dict]:
+    """Label -> colour of its method and marker of its variant."""
+    methods = method_looks(list(table["method"]))
+    pairs = table.drop_duplicates("label")[["method", "label"]].itertuples(index=False)
+    ordered = sorted(pairs, key=lambda p: (p.method != "blend", p.method, formats.natural_key(p.label)))
+    seen: dict[str, int] = {}
+    looks = {}
+    for method, label in ordered:
+        variant = seen[method] = seen.get(method, -1) + 1
+        first = MARKERS.index(methods[method]["marker"])
+        looks[label] = {"color": methods[method]["color"], "marker": MARKERS[(first + variant) % len(MARKERS)],
+                        "method": method}
+    return looks
+
+
+def _handles(table: pandas.DataFrame, looks: dict) -> list[Line2D]:
+    """Legend entries: every variant by name, or only the method where it has many."""
+    handles = []
+    for method in dict.fromkeys(look["method"] for look in looks.values()):
+        own = {label: look for label, look in looks.items() if look["method"] == method}
+        if len(own) > MOST_VARIANTS_NAMED:
+            first = next(iter(own.values()))
+            own = {f"{method} ({len(own)} variants)": first | {"marker": "s"}}
+        handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"],
+                           markersize=5, markeredgecolor="black", markeredgewidth=0.4, label=label)
+                    for label, look in own.items()]
+    return [*handles, Line2D([], [], **FRONT, label="Pareto front")]

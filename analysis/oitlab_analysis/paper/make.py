@@ -8,10 +8,10 @@ from pathlib import Path
 
 import matplotlib
 
-from ..compare.tidy import as_table
-from ..draw import charts, curves, quality_speed
 from ..compare.sections import add_comparisons, make_sections
-from ..draw.style import STYLE, save
+from ..compare.tidy import as_table
+from ..draw.charts import KINDS
+from ..draw.style import STYLE, footnotes, save
 from ..write.table import markdown_text, terminal_warnings
 from . import bma_tables, lucidraster, methods
 from .common import file_name
@@ -20,16 +20,14 @@ from .paired_table import Table, latex_text, markdown, missing_text, write
 
 PAPER = Path(__file__).resolve().parents[3] / "paper"
 NO_DEVICE = "no device yet"
-# Of our own cells: name, experiment, what it shows, how it is drawn.
+# Of our own cells: name, experiment, what it shows, the kind of chart of a report.
 PLOTS = (
-    ("quality-speed", "methods", "Quality against speed of every method, over all scenes",
-     lambda section: quality_speed.draw_overall(section, 0, "rmse")),
+    ("quality-speed", "methods", "Quality against speed of every method, over all scenes", "quality-speed"),
     ("quality-speed-scenes", "methods", "Quality against speed of every method, per scene",
-     lambda section: quality_speed.draw_scenes(section, 0, "rmse")),
+     "quality-speed-scenes"),
     ("depth-filter-curve", "depth_filter", "Invalid pixels and time over the size of the depth filter",
-     curves.draw_depth_filter),
-    ("alpha-threshold-curve", "alpha_threshold", "Speed-up over the alpha threshold",
-     curves.draw_alpha_threshold),
+     "depth-filter"),
+    ("alpha-threshold-curve", "alpha_threshold", "Speed-up over the alpha threshold", "alpha-threshold"),
 )
 
 
@@ -73,18 +71,19 @@ def draw_pictures(found: Measurements, device: str, out: Path) -> list[tuple[str
     suffix = file_name(device)
     drawn = []
     with matplotlib.rc_context(STYLE):
-        for name, experiment, caption, draw in PLOTS:
-            section = section_of(found.of(device), experiment)
-            figure = draw(section) if section else None
-            count = charts.KINDS[name.removesuffix("-curve")].pages(section) if section else 1
+        for name, experiment, caption, chart in PLOTS:
+            section, kind = section_of(found.of(device), experiment), KINDS[chart]
+            count = kind.pages(section, "rmse") if section else 0
+            figure = kind.draw(section, 0, "rmse") if count else None
             rest = f" The first of {count} charts: `oitlab report` draws the others." if count > 1 else ""
-            drawn.append((f"{name}-{suffix}", f"{caption}. {device}.{rest}", figure))
+            said = footnotes(section) if section else f"{device}."
+            drawn.append((f"{name}-{suffix}", f"{caption}.{rest} {said}", figure))
         for name, says, figure in bma_tables.figures(found, device):
             caption = f"Measured on {device}. Published ({name.split('-')[1]} of the BMA paper): {says}."
             drawn.append((name, caption, figure))
-        for name, _, figure in drawn:
+        for name, caption, figure in drawn:
             if figure is not None:
-                save(figure, out / name)
+                save(figure, out / name, caption)
             else:  # of an earlier run
                 for kind in ("png", "svg", "pdf"):
                     (out / f"{name}.{kind}").unlink(missing_ok=True)
@@ -118,11 +117,9 @@ def whole_latex(tables: list[Table], pictures: list[tuple[str, str, bool]]) -> s
     lines = [rf"\input{{\generated/{table.name}}}" for table in tables]
     for name, caption, drawn in pictures:
         if drawn:
-            # A small figure stays small: \linewidth is that of the column or of the page.
-            kind = "figure" if name.startswith("quality-speed-") and "scenes" not in name else "figure*"
-            lines += [rf"\begin{{{kind}}}", r"\centering",
+            lines += [r"\begin{figure*}", r"\centering",
                       rf"\includegraphics[width=\linewidth,height=0.75\textheight,keepaspectratio]{{\generated/{name}.pdf}}",
-                      rf"\caption{{{latex_text(caption)}}}", r"\end{" + kind + "}", r"\clearpage"]
+                      rf"\caption{{{latex_text(caption)}}}", r"\end{figure*}", r"\clearpage"]
     return "\n".join(lines) + "\n"
 
 

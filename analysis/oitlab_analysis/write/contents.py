@@ -32,6 +32,7 @@ class Report:
     clock: str  # one line on the clock of the device, or ""
     notes: list[str]
     command: str  # that makes this report
+    more: str = ""  # how many charts were left out, and how to see them
 
     @property
     def title(self) -> str:

@@ -24,6 +24,8 @@ def markdown_report(report: Report) -> str:
         lines += [""]
         for chart in section_charts:
             lines += [f"![{markdown_text(chart.caption)}](plots/{chart.name}.png)", ""]
+        if report.more and section is report.sections[-1]:
+            lines += [markdown_text(report.more), ""]
         lines += _images(report, section) + _unmeasured(section)
         lines += ["### How to reproduce", "", f"At commit {markdown_text(section.context['Commit'])}:", ""]
         lines += [f"    {command}" for command in commands(report, section)] + [""]

@@ -1,24 +1,31 @@
-"""The report as one HTML page that opens from the disk: tables, charts, and pictures to compare."""
+"""The report as one HTML page that opens from the disk: table, charts, and pictures to compare."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import html
 import json
+import re
 from pathlib import Path
 
 import jinja2
 
 from .. import formats
-from . import images
 from ..compare.labels import parameter_text, parameters_of, records
 from ..compare.sections import Section
+from ..draw.style import Chart
+from . import images
 from .contents import Report, all_parameters, commands, summary, unmeasured
 from .table import describe, error_caption, setting_heading
 
-TEMPLATES = Path(__file__).parent / "templates"
+HERE = Path(__file__).parent
+TEMPLATES, TABULATOR = HERE / "templates", HERE / "vendor" / "tabulator"
 
 # Column head, name in describe(), column to sort by, what it means.
 FIGURES = (
-    ("Frame, ms", "frame", "frame_ms.median", "median time of a whole frame, with its 95% interval"),
+    ("Frame, ms", "frame", "frame_ms.median", "median time of a whole frame, with its 95% interval; (n = 2): of "
+     "2 blocks, too few for an interval"),
     ("Ratio", "ratio", "ratio", "frame time over that of the baseline, with its 95% interval"),
     ("Verdict", "verdict", "verdict", "against the baseline"),
     ("RMSE", "rmse", "quality.rmse", "root mean square error against the reference image"),
@@ -29,41 +36,60 @@ FIGURES = (
     ("Fragments", "fragments", "counter.fragments", "transparent fragments of a frame"),
     ("Memory, MiB", "memory", "memory_total_bytes", "all buffers and images of the method"),
 )
+# Nothing but what the page itself holds, and pictures beside it.
+POLICY = ("default-src 'none'; img-src data: 'self' file:; style-src 'unsafe-inline'; script-src {scripts}; "
+          "base-uri 'none'; form-action 'none'")
 
 
 def html_page(report: Report) -> str:
-    """The page."""
+    """The page. It loads nothing over a network, and a content security policy holds it to that."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )
     pictures = images.Pictures(report.folder, report.sources, report.sections)
+    read = [path.read_text(encoding="utf-8") for path in
+            (TABULATOR / "tabulator.js", TEMPLATES / "report.js", TEMPLATES / "viewer.js")]
+    scripts = [read[0], read[1] + read[2]]
+    alone = len(report.sections) == 1
     return environment.get_template("report.html.jinja").render(
-        title=report.title,
+        title=report.sections[0].title if alone else report.title,
         summary=summary(report.table),
         clock=report.clock,
-        warnings=report.notes,
+        warnings=[] if alone else report.notes,
+        more=report.more,
         figures=FIGURES,
+        policy=POLICY.format(scripts=" ".join(map(_hash, scripts))),
+        scripts=scripts,
+        style="".join((folder / name).read_text(encoding="utf-8") for folder, name in
+                      ((TABULATOR, "tabulator.css"), (TEMPLATES, "report.css"))),
         pictures=_json(pictures.embedded),
         pictures_note=pictures.note(),
-        style=(TEMPLATES / "report.css").read_text(encoding="utf-8"),
-        script=(TEMPLATES / "report.js").read_text(encoding="utf-8")
-        + (TEMPLATES / "viewer.js").read_text(encoding="utf-8"),
-        sections=[
-            {
-                "title": section.title,
-                "context": section.context,
-                "warnings": section.warnings,
-                "rows": [_row(row) for row in records(section.table)],
-                "charts": [_chart(report.folder, chart) for chart in charts],
-                "settings": _settings(section, pictures),
-                "parameters": all_parameters(section),
-                "unmeasured": unmeasured(section),
-                "commands": commands(report, section),
-            }
-            for section, charts in zip(report.sections, report.charts)
-        ],
+        sections=[_section(report, index, pictures) for index in range(len(report.sections))],
     )
+
+
+def _section(report: Report, index: int, pictures: images.Pictures) -> dict[str, object]:
+    section, charts = report.sections[index], report.charts[index]
+    settings = _settings(section, pictures)
+    return {
+        "title": section.title,
+        "context": section.context,
+        "warnings": section.warnings if len(report.sections) > 1 else report.notes + section.warnings,
+        "table": _json(_table(section, settings)),
+        "lead": _lead(report.folder, charts[0], index + 1) if charts else None,
+        "charts": [_chart(report.folder, chart) for chart in charts[1:]],
+        "settings": _json(settings),
+        "pictured": bool(settings),
+        "parameters": all_parameters(section),
+        "unmeasured": unmeasured(section),
+        "commands": commands(report, section),
+    }
+
+
+def _hash(script: str) -> str:
+    digest = hashlib.sha256(script.encode("utf-8")).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
 def _json(value: object) -> str:
@@ -71,25 +97,43 @@ def _json(value: object) -> str:
     return json.dumps(value, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
 
 
-def _row(row: dict) -> dict[str, object]:
-    texts = describe(row)
-    return {
-        "status": row["status"],
-        "reason": texts["reason"],
-        "baseline": row["baseline"] or "",
-        "note": row["device_note"],
-        "clock": row["clock_note"],
-        "keys": [
-            (row["scene_label"], row["scene_label"], parameter_text(scene_facts(row))),
-            (row["view"], row["view"], ""),
-            (row["size_label"], row["width"] * row["height"], ""),
-            (row["label"], row["label"], ""),
-        ],
-        "figures": [
-            (name, texts.get(name, formats.NOTHING), _sort_value(row, column))
-            for _, name, column, _ in FIGURES
-        ],
-    }
+def _table(section: Section, settings: list[dict]) -> dict[str, object]:
+    """The columns, and the rows with their texts and, by `sort`, what each figure sorts by."""
+    rows = records(section.table)
+    places = {(setting["name"], picture["key"]): (i, j) for i, setting in enumerate(settings)
+              for j, picture in enumerate(setting["pictures"])}
+    columns = [{"field": "scene", "title": "Scene", "hint": ""}, {"field": "label", "title": "Method", "hint": ""}]
+    for field, title in (("view", "View"), ("size", "Size")):
+        columns.append({"field": field, "title": title, "hint": "",
+                        "hidden": len({row["view" if field == "view" else "size_label"] for row in rows}) == 1})
+    described = [describe(row) for row in rows]
+    for title, name, _, meaning in FIGURES:
+        empty = all(texts.get(name, formats.NOTHING) in (formats.NOTHING, "") for texts in described)
+        columns.append({"field": name, "title": title, "hint": meaning, "hidden": empty, "number": name != "verdict"})
+    return {"columns": columns,
+            "rows": [_row(row, texts, places.get((row["setting"], row["key"])))
+                     for row, texts in zip(rows, described)]}
+
+
+def _row(row: dict, texts: dict[str, str], place: tuple[int, int] | None) -> dict[str, object]:
+    """One cell; `place` says which picture of which setting is its."""
+    found = {"scene": row["scene_label"], "label": row["label"], "view": row["view"], "size": row["size_label"],
+             "hints": {"scene": parameter_text(scene_facts(row)), "label": parameter_text(parameters_of(row))},
+             "sort": {"size": row["width"] * row["height"]}}
+    if place:
+        found["place"] = place
+    if row["status"] != "ok":
+        text = f"{row['status']}: {texts['reason']}"
+        return found | {"status": row["status"], "frame": text, "hints": found["hints"] | {"frame": text}}
+    found |= {name: texts[name] for _, name, _, _ in FIGURES if texts.get(name, formats.NOTHING) != formats.NOTHING}
+    found["sort"] |= {name: key for _, name, column, _ in FIGURES
+                      if name != "verdict" and (key := _sort_value(row, column)) is not None}
+    if row["baseline"]:
+        found["hints"]["ratio"] = f"baseline: {row['baseline']}" + (f" · {row['device_note']}" if row["device_note"] else "")
+    if row["clock_note"]:
+        found["frame"] += " §"
+        found["hints"]["frame"] = row["clock_note"]
+    return found
 
 
 def scene_facts(row: dict) -> dict[str, object]:
@@ -98,31 +142,46 @@ def scene_facts(row: dict) -> dict[str, object]:
             (isinstance(value, str) and value)}
 
 
-def _sort_value(row: dict, column: str) -> object:
-    """What the column sorts by; empty goes last. An infinite PSNR is the greatest."""
+def _sort_value(row: dict, column: str) -> float | None:
+    """What the column sorts by; None goes last. An infinite PSNR is the greatest."""
     value = row.get(column)
     if column == "quality.psnr" and not formats.is_number(value) and row.get("quality.rmse") == 0:
-        return "Infinity"
-    return value if formats.is_number(value) or isinstance(value, str) else ""
+        return 1e9
+    return float(value) if formats.is_number(value) else None
 
 
-def _chart(folder: Path, chart) -> dict[str, str]:
+def _lead(folder: Path, chart: Chart, number: int) -> dict[str, str]:
+    """The chart above the table, as SVG within the page: the pointer over a point says what it is."""
+    text = (folder / "plots" / f"{chart.name}.svg").read_text(encoding="utf-8")
+    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg"):], flags=re.DOTALL)
+    text = re.sub(r'<g id="(hint[0-9]+)">', lambda m: f"{m[0]}<title>{html.escape(chart.hints.get(m[1], ''))}</title>",
+                  text)
+    # Ids must differ between the charts of one page.
+    text = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>chart{number}-", text)
+    # The size is that of the page, not of the paper.
+    text = re.sub(r'<svg ([^>]*?)width="[^"]*" height="[^"]*"|<svg ([^>]*?)height="[^"]*" ([^>]*?)width="[^"]*"',
+                  lambda m: "<svg " + (m[1] or f"{m[2] or ''}{m[3] or ''}"), text, count=1)
+    return {"svg": text, "caption": chart.caption, "link": f"plots/{chart.name}"}
+
+
+def _chart(folder: Path, chart: Chart) -> dict[str, str]:
     content = (folder / "plots" / f"{chart.name}.svg").read_bytes()
-    return {"uri": images.data_uri(content, "svg+xml"), "caption": chart.caption,
-            "link": f"plots/{chart.name}"}
+    return {"uri": images.data_uri(content, "svg+xml"), "caption": chart.caption, "link": f"plots/{chart.name}"}
 
 
 def _settings(section: Section, pictures: images.Pictures) -> list[dict]:
-    """What the viewer offers: the pictures of each setting, the reference first to compare with."""
+    """What the viewer offers: the pictures of each setting, by the labels of the table."""
     result = []
-    for _, cells in section.settings():
+    for name, cells in section.settings():
         measured = cells[cells["status"] == "ok"]
         if measured.empty:
             continue
         result.append({
+            "name": name,
             "heading": setting_heading(cells),
             "pictures": [
                 {
+                    "key": row["key"],
                     "label": row["label"],
                     "parameters": parameter_text(parameters_of(row)),
                     "error": error_caption(row),

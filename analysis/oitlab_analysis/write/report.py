@@ -7,15 +7,21 @@ import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
+import pandas
+
 from ..compare.clock import clock_summary
 from ..compare.sections import add_comparisons, make_sections, mixture_warnings
 from ..compare.tidy import as_table
 from ..draw.charts import save_charts
+from ..draw.curves import Curve, check
 from ..read.cells import collect, left_out
 from .contents import Report, command_of, summary
 from .markdown import markdown_report
 from .page import html_page
 from .table import TERMINAL_WIDTH, terminal_table, terminal_warnings
+
+
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 @dataclass(frozen=True)
@@ -28,31 +34,35 @@ class Result:
 
 
 def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse",
-                all_charts: bool = False) -> Result:
+                all_charts: bool = False, curves: tuple[Curve, ...] = ()) -> Result:
     """Reads all cells of the paths (see collect()) and writes the report into `out`.
 
     Without `out` it is written into the results folder, where the paths name exactly one, and
-    nowhere otherwise: packs and folders of packs are somebody's data. Raises BadResults, OSError.
+    nowhere otherwise: packs and folders of packs are somebody's data. `curves` are drawn besides the
+    usual charts. Raises BadResults, OSError.
     """
     collection = collect(*paths)
     table = add_comparisons(as_table(collection.cells), collection.cells)
     sections = make_sections(collection.cells, table)
+    for curve in curves:
+        check(sections, curve)
     notes = mixture_warnings(table) + left_out(collection.problems)
     if collection.repeated:
         notes.append(f"{collection.repeated} cells were given twice, and count once.")
     folder, command = out or own_folder(paths), command_of(paths, out)
-    charts = [[] for _ in sections]
+    charts, more = [[] for _ in sections], ""
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
-        charts, missing = save_charts(sections, folder / "plots", metric, all_charts)
+        charts, missing = save_charts(sections, folder / "plots", metric, all_charts, curves)
         if missing:
-            notes.append(f"{missing} charts were left out to keep the page short: {command} --all-charts "
-                         "draws them.")
+            more = f"{missing} more charts: {command} --all-charts"
     report = Report(folder or Path(), collection.sources, sections, charts, table,
-                    clock_summary(list(collection.cells.values())), notes, command)
+                    clock_summary(list(collection.cells.values())), notes, command, more)
     text, files = terminal_text(report), []
     if folder:
-        files = write_files(report)
+        files = [folder / "plots" / f"{chart.name}.png" for own in charts for chart in own
+                 if chart.name.startswith("curve-")]
+        files += write_files(report)
     else:
         text += "\nNothing was written: --out DIR says where the page, the charts and the CSV go.\n"
     return Result(text, files, bool((table["status"] == "failed").any()))
@@ -63,8 +73,16 @@ def write_files(report: Report) -> list[Path]:
     files = [report.folder / name for name in ("report.html", "report.md", "cells.csv")]
     files[0].write_text(html_page(report), encoding="utf-8")
     files[1].write_text(markdown_report(report), encoding="utf-8")
-    report.table.to_csv(files[2], index=False)
+    defused(report.table).to_csv(files[2], index=False)
     return files
+
+
+def defused(table: pandas.DataFrame) -> pandas.DataFrame:
+    """The table with an apostrophe before texts that a spreadsheet would take for formulas."""
+    texts = table.select_dtypes("object").columns
+    return table.assign(**{name: table[name].map(
+        lambda value: f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value)
+        for name in texts})
 
 
 def own_folder(paths: list[Path]) -> Path | None:
@@ -82,6 +100,8 @@ def own_folder(paths: list[Path]) -> Path | None:
 def terminal_text(report: Report) -> str:
     blocks = [terminal_table(section) for section in report.sections]
     blocks.append(terminal_warnings(report.notes) + f"{summary(report.table)}.")
+    if report.more:
+        blocks[-1] += f"\n{report.more}"
     if report.clock:
         blocks[-1] += "\n" + textwrap.fill(report.clock, TERMINAL_WIDTH)
     return "\n\n".join(blocks) + "\n"

@@ -16,6 +16,10 @@ DRIVER = shutil.which("chromedriver")
 MISSING = None if CHROMIUM and DRIVER else "no Chromium and chromedriver (apt-get install chromium-driver)"
 
 
+def _move(x: float, y: float) -> dict:
+    return {"type": "pointerMove", "x": round(x), "y": round(y), "duration": 0}
+
+
 class Browser:
     """One session; close() ends it and the driver."""
 
@@ -30,7 +34,8 @@ class Browser:
             "binary": CHROMIUM,
             # No sandbox: it needs rights that containers rarely give; the page is our own.
             "args": ["--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1300,1000",
-                     "--disable-dev-shm-usage"],
+                     "--disable-dev-shm-usage", "--disable-quic", "--no-first-run", "--disable-sync",
+                     "--disable-background-networking", "--disable-component-update"],
         }
         wanted = {"browserName": "chrome", "goog:chromeOptions": options,
                   "goog:loggingPrefs": {"browser": "ALL"}}
@@ -57,8 +62,27 @@ class Browser:
             error.msg += ": " + error.read().decode()[:500]
             raise
 
-    def open(self, path) -> None:
-        self._post(f"{self._session}/url", {"url": path.resolve().as_uri()})
+    def open(self, path, state: str = "") -> None:
+        """Opens a file, with `state` (#a=b) behind its address."""
+        self._post(f"{self._session}/url", {"url": "about:blank"})  # or a new state would not load the page
+        self._post(f"{self._session}/url", {"url": path.resolve().as_uri() + state})
+
+    def _act(self, *actions: dict) -> None:
+        """Actions of the mouse, as a user's."""
+        mouse = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": list(actions)}
+        self._post(f"{self._session}/actions", {"actions": [mouse]})
+
+    def click(self, x: float, y: float) -> None:
+        self._act(_move(x, y), {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0})
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        self._act(_move(*start), {"type": "pointerDown", "button": 0}, _move(*end),
+                  {"type": "pointerUp", "button": 0})
+
+    def wheel(self, x: float, y: float, delta: float) -> None:
+        wheel = {"type": "wheel", "id": "wheel", "actions": [
+            {"type": "scroll", "x": round(x), "y": round(y), "deltaX": 0, "deltaY": round(delta)}]}
+        self._post(f"{self._session}/actions", {"actions": [wheel]})
 
     def run(self, script: str, *arguments):
         """Runs the body of a JavaScript function; returns what it returns."""

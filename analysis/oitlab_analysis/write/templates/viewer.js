@@ -50,26 +50,33 @@ function errorMap(a, b, gain) {
 
 class Viewer {
   constructor(root) {
-    const number = root.dataset.section;
     this.root = root;
-    this.settings = JSON.parse(
-        document.querySelector(`script.settings[data-section="${number}"]`).textContent);
+    this.section = sectionOf(root);
+    this.settings = parsed(this.section, "settings");
     for (const name of ["setting", "a", "b", "mode", "slider", "reset", "value"])
       this[name] = root.querySelector("." + name);
     this.gainLabel = root.querySelector(".gain");
     this.gain = this.gainLabel.querySelector("select");
     this.canvas = root.querySelector("canvas");
     this.pictures = [null, null];
-    this.setting.addEventListener("change", () => this.choose());
-    for (const list of [this.a, this.b]) list.addEventListener("change", () => this.load());
+    this.setting.replaceChildren(...this.settings.map(({ heading }, i) => new Option(heading, i)));
+    this.setting.addEventListener("change", () => { this.choose(); this.remember(); });
+    for (const list of [this.a, this.b])
+      list.addEventListener("change", () => { this.load(); this.remember(); });
     for (const control of [this.mode, this.gain]) control.addEventListener("change", () => this.draw());
     this.slider.addEventListener("input", () => { this.mode.value = "slider"; this.draw(); });
     this.reset.addEventListener("click", () => this.fit());
     this.canvas.addEventListener("wheel", event => {
+      if (!root.contains(document.activeElement)) return;  // the wheel is the page's until a click
       event.preventDefault();
       this.zoomBy(Math.exp(-event.deltaY / 300), ...this.place(event));
     }, { passive: false });
-    this.canvas.addEventListener("pointerdown", event => this.canvas.setPointerCapture(event.pointerId));
+    this.canvas.addEventListener("pointerdown", event => {
+      root.focus({ preventScroll: true });
+      this.canvas.setPointerCapture(event.pointerId);
+      this.splitting = this.isOnSplit(this.place(event)[0]);
+    });
+    this.canvas.addEventListener("pointerup", () => { this.splitting = false; });
     this.canvas.addEventListener("pointermove", event => this.move(event));
     this.canvas.addEventListener("dblclick", () => this.fit());
     root.addEventListener("keydown", event => this.key(event));
@@ -77,7 +84,7 @@ class Viewer {
   }
 
   // The pictures of a setting: A the first that is not exact, B the first that is.
-  choose() {
+  choose(andLoad = true) {
     const pictures = this.settings[this.setting.value].pictures;
     for (const list of [this.a, this.b])
       list.replaceChildren(...pictures.map((picture, i) => new Option(picture.label, i)));
@@ -85,7 +92,34 @@ class Viewer {
     const other = pictures.findIndex((picture, i) => i !== exact && !picture.exact);
     this.b.value = exact;
     this.a.value = other >= 0 ? other : pictures.length > 1 && exact === 0 ? 1 : 0;
+    if (andLoad) this.load();
+  }
+
+  // Picture `a`, and `b` if given, of a setting.
+  show(setting, a, b) {
+    if (Number(this.setting.value) !== setting) {
+      this.setting.value = setting;
+      this.choose(false);
+    }
+    this.a.value = a;
+    if (b !== undefined) this.b.value = b;
     this.load();
+    this.remember();
+  }
+
+  // The address of the page says what is shown: it can be sent to somebody.
+  remember() {
+    const { name, pictures } = this.settings[this.setting.value];
+    const state = new URLSearchParams(allSections.length > 1 ? { section: this.section.dataset.section } : {});
+    state.set("scene", name);
+    for (const list of ["a", "b"]) state.set(list, pictures[this[list].value].label);
+    history.replaceState(null, "", `#${state}`);
+  }
+
+  // Whether a place across the canvas is on the line between A and B.
+  isOnSplit(x) {
+    const line = this.canvas.width * this.slider.value / this.slider.max;
+    return this.mode.value === "slider" && Math.abs(x - line) < 12;
   }
 
   async load() {
@@ -133,7 +167,11 @@ class Viewer {
 
   move(event) {
     const [x, y] = this.place(event);
-    if (event.buttons & 1 && this.last) {
+    this.canvas.style.cursor = this.splitting || this.isOnSplit(x) ? "ew-resize" : "crosshair";
+    if (this.splitting) {
+      this.slider.value = Math.round(x / this.canvas.width * this.slider.max);
+      this.draw();
+    } else if (event.buttons & 1 && this.last) {
       this.left -= (x - this.last[0]) / this.zoom;
       this.top -= (y - this.last[1]) / this.zoom;
       this.draw();
@@ -236,15 +274,39 @@ class Viewer {
   }
 }
 
-// Built when first seen: a page may hold many sections.
+function viewerOf(section) {
+  const root = section.querySelector(".viewer");
+  return root.viewer ??= new Viewer(root);
+}
+
+// Tables and viewers are built when first seen: a page may hold many sections.
+const allSections = [...document.querySelectorAll("section[data-section]")];
 const watcher = new IntersectionObserver(entries => {
-  for (const entry of entries)
-    if (entry.isIntersecting) {
-      watcher.unobserve(entry.target);
-      entry.target.viewer = new Viewer(entry.target);
-    }
-});
-for (const root of document.querySelectorAll(".viewer")) watcher.observe(root);
+  for (const { isIntersecting, target } of entries) {
+    if (!isIntersecting) continue;
+    watcher.unobserve(target);
+    if (target.matches(".viewer")) viewerOf(sectionOf(target));
+    else buildTable(sectionOf(target));
+  }
+}, { rootMargin: "200px" });
+for (const element of document.querySelectorAll(".table, .viewer")) watcher.observe(element);
+
+// What the address of the page says is shown: #scene=boxes&a=lucid&b=reference.
+function restore() {
+  const state = new URLSearchParams(location.hash.slice(1));
+  if (!state.has("scene")) return;
+  const section = allSections[(state.get("section") ?? 1) - 1];
+  if (!section?.querySelector(".viewer")) return;
+  const viewer = viewerOf(section);
+  const setting = viewer.settings.findIndex(({ name }) => name === state.get("scene"));
+  if (setting < 0) return;
+  const place = list => viewer.settings[setting].pictures.findIndex(({ label }) => label === state.get(list));
+  const [a, b] = [place("a"), place("b")];
+  viewer.show(setting, Math.max(0, a), b < 0 ? undefined : b);
+  viewer.root.scrollIntoView({ block: "nearest" });
+}
+addEventListener("hashchange", restore);
+restore();
 
 // The gallery of a section is filled when it is opened.
 for (const gallery of document.querySelectorAll("details.gallery")) {
@@ -252,8 +314,7 @@ for (const gallery of document.querySelectorAll("details.gallery")) {
     const room = gallery.querySelector(".galleries");
     if (room.childElementCount) return;
     const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
-    const settings = JSON.parse(document.querySelector(
-        `script.settings[data-section="${gallery.dataset.section}"]`).textContent);
+    const settings = parsed(sectionOf(gallery), "settings");
     for (const { heading, pictures } of settings) {
       const grid = make("div", { className: "pictures" });
       for (const { label, error, parameters, picture, link, problem } of pictures) {

@@ -2,7 +2,7 @@
 report leaves out such stages and says so; what it says of the clock that cells recorded."""
 
 import pytest
-from oitlab_analysis.draw import bars
+from oitlab_analysis.draw import stacks
 from oitlab_analysis.compare import clock
 from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.read.cells import collect
@@ -62,7 +62,7 @@ def test_the_report_leaves_slow_stages_out_and_says_so(tmp_path):
     assert dict(table["stages_left_out"]) == {"boxes": True, "hairball": False, "teapot": False}
     assert dict(table["stage.opaque_ms"].notna()) == {"boxes": False, "hairball": False, "teapot": True}
     section, = make_sections(collection.cells, add_comparisons(as_table(collection.cells), collection.cells))
-    figure = bars.draw_stages(section, bars.paginate(section)[0])
+    figure = stacks.draw_stages(section, 0)
     assert len(figure.axes) == 1, "a panel for teapot alone"
     said = " ".join(make_report([tmp_path]).text.split())
     assert "Stage times of 1 of 2 cells were left out" in said and "The median frame of 1 of 2 cells" in said
@@ -99,7 +99,7 @@ def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
     assert "1 file was left out" in terminal and "/clock/rejected_blocks: missing" in terminal
     for text in (terminal, html, markdown):
         assert "settled, at full, in 2 of the 3 cells that recorded it; 3 blocks measured again" in text
-    marked = [row for row in html.split("<tr>") if " §</td>" in row]
+    marked = [row for row in html.split('{"scene":') if " §" in row and "hints" in row]
     listed = [line for line in markdown.splitlines() if line.startswith("- ") and "At full clock" in line]
     for teapot, tree in (marked, listed):
         assert "teapot" in teapot and "3 blocks left out" in teapot

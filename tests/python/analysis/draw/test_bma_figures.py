@@ -2,8 +2,7 @@
 
 import pandas
 import pytest
-from matplotlib.text import Text
-from synthetic import DEVICE, LAVAPIPE, make_cell
+from synthetic import make_cell
 
 from oitlab_analysis.draw import bma_figures
 from oitlab_analysis.paper import bma_tables
@@ -74,13 +73,6 @@ def test_figure9_is_relative_to_insertion_sort():
         abuffer("powerplant", stages={8: 2, 16: 2, 32: 4}, sort="merge")))
     lines = {line.get_label(): list(line.get_ydata()) for line in figure.axes[0].lines}
     assert lines == {"insertion": [1, 1, 1], "merge": [2, 1, 0.5]}
-
-
-def test_times_of_a_cpu_device_say_so():
-    for device, said in ((LAVAPIPE, True), (DEVICE, False)):
-        cell = make_cell("boxes", "local_memory", {"size": 8, "passes": 64}, device=device)
-        texts = [text.get_text() for text in bma_figures.bma_figure3(table_of(cell)).findobj(Text)]
-        assert any("CPU device" in text for text in texts) == said
 
 
 @pytest.mark.parametrize("make", [bma_tables.speedups_by_interval, bma_figures.bma_figure3, bma_figures.bma_figure5,

@@ -1,31 +1,16 @@
-"""Quality against speed, and the curves over a parameter: what they draw, on data worked out by hand."""
+"""Quality against speed: what it draws, on data worked out by hand."""
 
 import itertools
 
-import matplotlib
 import numpy
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from oitlab_analysis.draw import quality_speed
-from oitlab_analysis.draw import style
-from oitlab_analysis.draw import curves
+from oitlab_analysis.draw.style import footnotes
 from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.read.cells import collect
 from oitlab_analysis.compare.metrics import METRICS, wrong_order
-from oitlab_analysis.compare.sections import add_comparisons, make_sections
+from sections import drawn, section_of
 from synthetic import DEVICE, lucid_cell, make_cell, make_results, write_cell
-
-
-def section_of(folder):
-    collection = collect(folder)
-    return make_sections(collection.cells, add_comparisons(as_table(collection.cells), collection.cells))[0]
-
-
-def drawn(draw, *arguments):
-    with matplotlib.rc_context(style.STYLE):
-        figure = draw(*arguments)
-        FigureCanvasAgg(figure).draw()
-    return figure
 
 
 @pytest.mark.parametrize("points, wanted", [
@@ -121,55 +106,35 @@ def test_texts_of_the_panels_do_not_overlap(tmp_path):
             assert one.width <= 0 or two.width <= 0 or not one.overlaps(two), (a, b)
 
 
-def test_the_lines_of_a_chart_differ_by_shape_for_prints_in_grey():
-    looks = [style.line_style(i) for i in range(curves.SETTINGS_PER_CHART)]
-    assert len({look["marker"] for look in looks}) == curves.SETTINGS_PER_CHART
-
-
-@pytest.fixture
-def filters(tmp_path):
-    """Two scenes, filters of 1 to 4 with and without repair; time grows by a tenth a step from 3."""
-    for scene in ("boxes", "teapot"):
-        for n, repair in itertools.product((1, 2, 3, 4), (True, False)):
-            write_cell(tmp_path, lucid_cell(scene, 2.0, 3 * 1.1 ** (n - 3), 2304 // 10**n,
-                                            {"depth_filter": n, "repair": repair}))
-        write_cell(tmp_path, lucid_cell(scene, 2.0, 1.5, 23, {"depth_filter": 3, "alpha_threshold": 0.5}))
-    return section_of(tmp_path)
-
-
-def test_lines_hold_cells_that_differ_in_one_parameter_only(filters):
-    lines = curves.lines_of(filters, "lucid", "depth_filter")
-    assert [(line.setting, line.variant) for line in lines] == [
-        (scene, f"repair={word}") for scene in ("boxes", "teapot") for word in ("false", "true")]
-    assert all(line.values == [1, 2, 3, 4] for line in lines)
-    for line in lines:
-        ratios = [c.ratio for c in curves.against(filters, line, 3)]
-        assert ratios == pytest.approx([1.1**-2, 1.1**-1, 1, 1.1], rel=0.01)
-
-
-def test_the_depth_filter_chart_shows_shares_and_ratios(filters):
-    left, right = drawn(curves.draw_depth_filter, filters).axes
-    assert left.lines[0].get_ydata() == pytest.approx([100 * n / 2304 for n in (230, 23, 2)] + [100 * 2 / 2304 / 4])
-    assert right.lines[0].get_ydata() == pytest.approx([82.6, 90.9, 100, 110], rel=0.01)
-    assert len(left.lines) == 2 and len(right.lines) == 4, "found as many, repaired or not"
-
-
-def test_the_alpha_chart_shows_speed_ups(filters):
-    axes = drawn(curves.draw_alpha_threshold, filters).axes[0]
-    lines = [line for line in axes.lines if len(line.get_xdata()) == 2 and line.get_marker() != "None"]
-    assert [list(line.get_ydata()) for line in lines] == [[1, pytest.approx(2, rel=0.01)]] * 2
-    assert [t.get_text() for t in axes.get_xticklabels()] == ["off", "0.5"]
-
-
-def test_there_is_no_curve_without_a_sweep(tmp_path):
-    section = section_of(make_results(tmp_path, 5, 2))
-    assert curves.draw_depth_filter(section) is None and curves.draw_alpha_threshold(section) is None
-
-
-def test_the_chart_of_ratios_to_blend_says_what_a_device_note_does(tmp_path):
+def test_a_device_note_is_in_the_caption_of_a_chart_of_ratios(tmp_path):
     """Charts are copied out of reports, away from the note there."""
     for name, noted in (("NVIDIA H200", True), ("Example GPU 4000", False)):
         make_results(tmp_path / name, methods=3, scenes=2, device=DEVICE | {"name": name})
-        figure = drawn(quality_speed.draw_overall, section_of(tmp_path / name), 0, "rmse")
-        label = figure.axes[0].get_xlabel()
-        assert ("baseline ‡" in label) == ("2 of its 66 TPCs" in " ".join(label.split())) == noted
+        section = section_of(tmp_path / name)
+        label = drawn(quality_speed.draw_overall, section, 0, "rmse").axes[0].get_xlabel()
+        assert ("baseline ‡" in label) == ("2 of its 66 TPCs" in footnotes(section)) == noted
+
+
+def test_points_are_named_where_they_stand(tmp_path):
+    figure = drawn(quality_speed.draw_overall, section_of(make_results(tmp_path, 5, 2)), 0, "rmse")
+    texts = {text.get_text() for text in figure.axes[0].texts}
+    assert {"blend", "wboit", "lucid (tile=16)", "reference"} <= texts
+    panels = drawn(quality_speed.draw_scenes, section_of(tmp_path), 0, "rmse").axes
+    for axes in panels:
+        names = [text.get_text() for text in axes.texts]
+        assert len(names) == len(set(names)) and set(names) <= {"blend", "wboit", "lucid", "reference"}
+
+
+def test_variants_of_one_method_are_named_by_what_differs(tmp_path):
+    for n in (1, 2):
+        write_cell(tmp_path, make_cell(method="lucid", parameters={"n": n}, frame_ms=n, rmse=0.1 / n))
+    axes, = drawn(quality_speed.draw_scenes, section_of(tmp_path), 0, "rmse").axes
+    assert [text.get_text() for text in axes.texts] == ["n=1", "n=2"]
+
+
+def test_one_slow_method_does_not_crush_a_panel(tmp_path):
+    for number, time in enumerate((1, 1.1, 1.2, 1.3, 1.4, 900)):
+        write_cell(tmp_path, make_cell(method=f"m{number}", frame_ms=time, rmse=0.1))
+    axes, = drawn(quality_speed.draw_scenes, section_of(tmp_path), 0, "rmse").axes
+    assert axes.get_xlim()[1] < 3
+    assert any(text.get_text().startswith("m5: ") and text.get_text().endswith("→") for text in axes.texts)

@@ -1,6 +1,9 @@
 """The report from end to end, on synthetic results."""
 
+import base64
 import csv
+import hashlib
+import html
 import io
 import json
 import os
@@ -39,13 +42,13 @@ def embedded_pictures(html):
 
 
 class Page(HTMLParser):
-    """What a test needs of a page: its resources, its table and whether its tags match."""
+    """What a test needs of a page: its resources, its tables and whether its tags match."""
 
     VOID = {"meta", "img", "br", "link", "input"}
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.sources, self.links, self.rows, self.cell = [], [], [], [], None
+        self.open, self.sources, self.links, self.text = [], [], [], text
         self.feed(text)
         assert self.open == []
 
@@ -56,20 +59,14 @@ class Page(HTMLParser):
         assert tag != "img" or attributes["alt"]
         if tag not in self.VOID:
             self.open.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-            self.cell = True
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
-        if tag in ("td", "th"):
-            self.cell = None
 
-    def handle_data(self, text):
-        if self.cell:
-            self.rows[-1][-1] += text
+    def tables(self):
+        """The rows of each section's table."""
+        found = re.findall(r'<script type="application/json" class="rows">(.*?)</script>', self.text, re.S)
+        return [json.loads(text) for text in found]
 
 
 @pytest.fixture(scope="module")
@@ -135,9 +132,10 @@ def test_help_says_what_is_written_and_the_exit_codes():
 
 
 def test_page_is_self_contained_and_well_formed(results, page):
-    assert len(page.sources) == 5  # charts: quality against speed (2), times, stages, memory
+    assert len(re.findall(r'<figure class="chart lead">\s*<svg ', page.text)) == 1, "quality against speed, within the page"
+    assert len(page.sources) == 4  # the other charts: per scene, times, stages, memory
     assert all(source.startswith("data:image/svg+xml") for source in page.sources)
-    pictures = embedded_pictures((results / "report.html").read_text(encoding="utf-8"))
+    pictures = embedded_pictures(page.text)
     # Those of the two exact methods are the same, bit for bit, in each of the two scenes.
     assert len(pictures) == 2 * 3
     assert all(p["uri"].startswith("data:image/png") and p["scale"] == 1 for p in pictures.values())
@@ -146,31 +144,63 @@ def test_page_is_self_contained_and_well_formed(results, page):
         assert link.startswith("#") or (results / link).is_file()
 
 
+def test_the_policy_allows_the_scripts_of_the_page_and_no_others(page):
+    policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page.text)[1]
+    policy = html.unescape(policy)
+    assert policy.startswith("default-src 'none'; ") and "http" not in policy
+    script_src, = [part for part in policy.split("; ") if part.startswith("script-src")]
+    scripts = re.findall(r"<script>(.*?)</script>", page.text, re.S)
+    hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts]
+    assert script_src.split()[1:] == [f"'sha256-{digest}'" for digest in hashes] and len(hashes) == 2
+
+
+def test_the_pointer_over_a_point_shows_its_variant(page):
+    chart = page.text[page.text.index("<svg "):page.text.index("</svg>")]
+    assert re.search(r'<g id="chart1-hint[0-9]+"><title>lucid: 1.70, RMSE 0</title>', chart)
+
+
+def test_the_first_screen_has_title_plot_and_table_in_this_order(page):
+    marks = [page.text.index(mark) for mark in ("<h1>", "<svg ", 'class="table"', 'class="viewer"', "<img ")]
+    assert marks == sorted(marks)
+
+
+def test_warnings_are_one_line_with_their_count(tmp_path):
+    make_results(tmp_path, 2, 1, device=LAVAPIPE)
+    for number in range(70):
+        (tmp_path / "cells" / f"half{number}.json").write_text("{")
+    text = html_of(tmp_path)
+    summary, = re.findall(r'<details class="warnings"><summary>(.*?)</summary>', text)
+    assert "<strong>2 warnings</strong>" in summary and "70 files were left out" in summary
+    assert "CPU device: these times say nothing about GPUs." in text
+
+
 def test_page_table_holds_the_figures_of_the_cells(results, page):
-    head = [text.strip() for text in page.rows[0]]
-    rows = {(r[0], r[3]): dict(zip(head, r)) for r in page.rows[1:] if len(r) == len(head)}
-    assert len(rows) == 8
+    table, = page.tables()
+    rows = {(row["scene"], row["label"]): row for row in table["rows"]}
+    assert len(rows) == 10
     for path in (results / "cells").glob("*.json"):
         cell = json.loads(path.read_text())
-        if cell["status"] != "ok":
-            continue
         row = rows[cell["scene"]["name"], cell["method"]]
-        shown = [float(x) for x in re.findall(r"[\d.]+", row["Frame, ms"])]
+        if cell["status"] != "ok":
+            assert row["frame"] == f"{cell['status']}: {cell['reason']}"
+            continue
+        shown = [float(x) for x in re.findall(r"[\d.]+", row["frame"])]
         frame = cell["statistics"]["frame"]
         assert shown == pytest.approx([frame["median"], *frame["ci95"]], rel=0.006)
+        assert row["sort"]["frame"] == frame["median"]
         equal = cell["quality"]["psnr"] is None
-        assert row["PSNR, dB"] == "∞ (equal)" if equal else float(row["PSNR, dB"]) > 20
-        assert float(row["Memory, MiB"]) == pytest.approx(cell["memory_bytes"]["total"] / 2**20,
-                                                          rel=0.006)
+        assert row["psnr"] == "∞ (equal)" if equal else float(row["psnr"]) > 20
+        assert float(row["memory"]) == pytest.approx(cell["memory_bytes"]["total"] / 2**20, rel=0.006)
         # The generator makes every method a known multiple of blend.
         factor = {"blend": 1, "reference": 3.1, "wboit": 1.003, "lucid": 1.7}[cell["method"]]
-        assert float(row["Ratio"].split()[0]) == pytest.approx(factor, rel=0.01)
-        assert row["Verdict"] == {"blend": "baseline", "wboit": "same"}.get(cell["method"], "slower")
+        assert float(row["ratio"].split()[0]) == pytest.approx(factor, rel=0.01)
+        assert row["verdict"] == {"blend": "baseline", "wboit": "same"}.get(cell["method"], "slower")
+        assert all(f"{name}=" in row["hints"]["label"] for name in cell["parameters"])
 
 
 def test_text_from_cells_is_escaped(results):
     text = (results / "report.html").read_text(encoding="utf-8")
-    assert "3 | frames &lt;b&gt;" in text and "<b>" not in text
+    assert "3 | frames &lt;b&gt;" in text and "3 | frames \\u003cb>" in text and "<b>" not in text
     markdown = (results / "report.md").read_text(encoding="utf-8")
     assert "3 \\| frames &lt;b>" in markdown
 
@@ -357,6 +387,29 @@ def test_nothing_is_written_into_a_folder_that_git_tracks(tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == [".git", "cells", "images"]
 
 
+def test_names_are_defused_in_csv(tmp_path):
+    """Spreadsheets take a text that begins with = + - @ for a formula."""
+    for number, name in enumerate(("=1+1", "+1", "-1", "@x", "plain")):
+        write_cell(tmp_path, make_cell(scene=f"s{number}", method=name))
+    make_report([tmp_path])
+    with open(tmp_path / "cells.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["method"] for row in rows] == ["'=1+1", "'+1", "'-1", "'@x", "plain"]
+    assert not [text for row in rows for text in row.values() if text.startswith(("=", "+", "@"))]
+
+
+def test_a_chart_of_ones_own_is_drawn_and_named(tmp_path):
+    for layers in (1, 2, 4):
+        write_cell(tmp_path, make_cell(method="depth_peeling", parameters={"layers": layers}, rmse=0.1 / layers))
+    done = run("report", tmp_path, "--x", "layers", "--y", "rmse", "--per", "scene")
+    chart = tmp_path / "plots" / "curve-rmse-over-layers-per-scene-1.png"
+    assert done.returncode == 0 and chart.is_file() and str(chart) in done.stdout.splitlines()
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.index("curve-rmse-over-layers") < page.index("frame-times-1.png")
+    wrong = run("report", tmp_path, "--x", "layer")
+    assert wrong.returncode == 2 and "did you mean layers" in wrong.stderr and wrong.stderr.count("\n") == 1
+
+
 @pytest.mark.skipif(not (ROOT / "paper/data/h200").is_dir(), reason="no published cells")
 def test_every_published_cell_is_in_the_report():
     collection = collect(ROOT / "paper/data/h200")
@@ -376,7 +429,7 @@ def test_scenes_that_differ_by_opacity_are_not_merged(tmp_path):
         cell["scene"]["opacity"] = opacity
         write_cell(tmp_path, cell | {"id": f"at-{opacity}"})
     text = make_report([tmp_path]).text
-    assert "boxes (opacity=0.250)" in text and "boxes (opacity as modelled)" in text
+    assert "boxes (opacity=0.25)" in text and "boxes (opacity as modelled)" in text
 
 
 def test_cells_that_nothing_tells_apart_are_numbered(tmp_path):

@@ -1,0 +1,162 @@
+"""Frame times of a section: a band for each setting with a row for each method, a dot with its interval
+for each cell.
+
+A dot may stand on a log axis, where the length of a bar would mean nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+import numpy
+import pandas
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .. import formats
+from ..compare.labels import records
+from ..compare.sections import Section
+from .layout import (HALO, LABEL, TICKS, add_legend, characters, legend_height, log_axis, mark_beyond, plain,
+                     robust_limit)
+from .quality_speed import MOST_VARIANTS_NAMED, looks_of
+from .style import GRID, PAGE, TALLEST
+
+LOG_ABOVE = 4  # span of times from which on the axis is logarithmic
+ROW, BETWEEN, LINE = 0.095, 0.07, 0.13  # inches: a row, the room between bands, a line of a band's name
+NAMES = 1.6  # inches left of the axes
+TALLEST_PAGE = TALLEST - 1.6  # inches of bands: what a legend and the axis leave
+CAPTION = ("Frame times: medians with their 95% intervals, a band for each scene and setting with a row for "
+           "each method.")
+
+
+def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
+    """The settings of a section in charts of about equal height; a setting that is too long for one
+    is taken apart."""
+    parts = [(name, part) for name, cells in section.settings() for part in _parts(cells)]
+    total = sum(_height(name, cells) for name, cells in parts)
+    target = total / math.ceil(total / TALLEST_PAGE)
+    pages: list[list] = [[]]
+    height = 0.0
+    for name, cells in parts:
+        own = _height(name, cells)
+        if pages[-1] and (height + own / 2 > target or height + own > TALLEST_PAGE):
+            pages.append([])
+            height = 0.0
+        pages[-1].append((name, cells))
+        height += own
+    return pages
+
+
+def pages(section: Section) -> int:
+    return len(paginate(section))
+
+
+def _name_lines(name: str) -> list[str]:
+    return textwrap.wrap(name, characters(NAMES - 0.1, 8)) or [""]
+
+
+def _parts(cells: pandas.DataFrame) -> list[pandas.DataFrame]:
+    """The cells in parts of at most as many methods as have a row on one page."""
+    most = int((TALLEST_PAGE - BETWEEN) / ROW)
+    methods = cells["method"].unique()
+    return [cells[cells["method"].isin(methods[start:start + most])] for start in range(0, len(methods), most)]
+
+
+def _height(name: str, cells: pandas.DataFrame) -> float:
+    return max(cells["method"].nunique() * ROW, len(_name_lines(name)) * LINE) + BETWEEN
+
+
+def draw_frame_times(section: Section, page: int, metric: str = "") -> Figure | None:
+    """The bands of one page; every chart of a section has the same axis. None if nothing was measured."""
+    table = section.table[section.table["status"] == "ok"]
+    if table.empty:
+        return None
+    looks = looks_of(table)
+    bands = paginate(section)[page]
+    handles = _handles({label for _, cells in bands for label in cells["label"]}, looks)
+    legend = legend_height([handle.get_label() for handle in handles], PAGE)
+    height = sum(_height(name, cells) for name, cells in bands)
+    total = legend + height + TICKS + LABEL
+    figure = Figure(figsize=(PAGE, total))
+    axes = figure.add_axes((NAMES / PAGE, (TICKS + LABEL) / total, (PAGE - NAMES - 0.1) / PAGE, height / total))
+    axes.set_ylim(height, 0)
+    limit = _set_time_axis(axes, table)
+    middles, names, rows, y = [], [], [], 0.0
+    for index, (name, cells) in enumerate(bands):
+        own, methods = _height(name, cells), list(cells["method"].unique())
+        if index % 2:
+            axes.axhspan(y, y + own, color="#f3f5f7", linewidth=0)
+        top = y + (own - len(methods) * ROW) / 2
+        rows += [(top + (methods.index(row["method"]) + 0.5) * ROW, row) for row in records(cells)]
+        middles.append(y + own / 2)
+        names.append("\n".join(_name_lines(name)))
+        y += own
+    _draw_rows(axes, rows, looks, limit)
+    axes.set_yticks(middles, names, size=8)
+    axes.tick_params(axis="y", length=0)
+    axes.tick_params(axis="x", labelsize=7.5)
+    axes.grid(axis="x", **GRID)
+    axes.spines[["top", "right"]].set_visible(False)
+    log = " (log scale)" if axes.get_xscale() == "log" else ""
+    axes.set_xlabel(f"frame time, ms: median, 95% interval{log}", size=8)
+    add_legend(figure, handles)
+    return figure
+
+
+def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> float:
+    """Logarithmic if the times span more than 4x; returns the largest time drawn in its place."""
+    medians = table["frame_ms.median"]
+    log = medians.max() / medians.min() > LOG_ABOVE
+    limit = robust_limit(medians, log) or float(medians.max())
+    shown = table[medians <= limit]
+    least = numpy.nanmin([medians.min(), shown["frame_ms.ci_low"].min()])
+    most = numpy.nanmax([shown["frame_ms.median"].max(), shown["frame_ms.ci_high"].max()])
+    if log and least > 0:
+        log_axis(axes, "x", least / 1.15, most * 1.15, 7)
+    else:
+        axes.set_xlim(0, most * 1.06)
+        axes.xaxis.set_major_formatter(lambda value, _: plain(value))
+    return limit
+
+
+def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: float) -> None:
+    """All dots of one variant at once: an artist for each would be slow."""
+    measured = [(y, row) for y, row in rows if row["status"] == "ok"]
+    for label in dict.fromkeys(row["label"] for _, row in measured):
+        own = [(y, row) for y, row in measured if row["label"] == label]
+        look = looks[label]
+        inside = [(y, row) for y, row in own if row["frame_ms.median"] <= limit]
+        heights = [y for y, _ in inside]
+        sure = [(y, row) for y, row in inside if formats.is_number(row["frame_ms.ci_low"])]
+        if sure:
+            axes.hlines([y for y, _ in sure], [row["frame_ms.ci_low"] for _, row in sure],
+                        [row["frame_ms.ci_high"] for _, row in sure], color=look["color"], linewidth=1.1)
+        axes.plot([row["frame_ms.median"] for _, row in inside], heights, linestyle="none",
+                  marker=look["marker"], color=look["color"], markersize=4.2, markeredgecolor="black",
+                  markeredgewidth=0.35)
+        mark_beyond(axes, [(0, y, f"{label}: {formats.number(row['frame_ms.median'])}") for y, row in own
+                           if row["frame_ms.median"] > limit], "x", "black")
+    unmeasured: dict[float, list[dict]] = {}
+    for y, row in rows:
+        if row["status"] != "ok":
+            unmeasured.setdefault(y, []).append(row)
+    for y, own in unmeasured.items():
+        text = f"{own[0]['label']}: {own[0]['status']}" if len(own) == 1 else \
+            f"{own[0]['method']}: {len(own)} not measured"
+        axes.annotate(text, (axes.get_xlim()[0], y), (4, 0), textcoords="offset points", va="center", size=5.5,
+                      color="#a40e26", path_effects=HALO)
+
+
+def _handles(shown: set[str], looks: dict) -> list[Line2D]:
+    """Every variant by name; only the method where it has many."""
+    handles = []
+    for method in dict.fromkeys(look["method"] for label, look in looks.items() if label in shown):
+        own = {label: look for label, look in looks.items() if look["method"] == method and label in shown}
+        if len(own) > 2 * MOST_VARIANTS_NAMED:
+            own = {f"{method} ({len(own)} variants)": next(iter(own.values()))}
+        handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+                           markeredgecolor="black", markeredgewidth=0.35, label=label)
+                    for label, look in own.items()]
+    return handles
