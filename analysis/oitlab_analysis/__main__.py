@@ -54,7 +54,8 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     report.add_argument("--all-charts", action="store_true",
                         help="draw every chart, however many there are")
     own = report.add_argument_group(
-        "a chart of your own", "Lines over any parameter, for what else differs: the second chart of each section, and\n"
+        "a chart of your own",
+        "Lines over any parameter, for what else differs: the second chart of each section, and\n"
         "plots/curve-*. NAME is a parameter (layers), opacity, detail, triangles, pixels, path (the place\n"
         "on a camera path), time, ratio, memory, an error as above, a stage (sort), a counter\n"
         "(fragments), or any column of cells.csv.")

@@ -16,10 +16,10 @@ import numpy
 
 from .. import formats
 from ..read.cells import Collection, collect, left_out
+from ..read.sources import BadResults
 from .device_notes import NOTED, note_of
 from .labels import parameter_text
-from ..read.sources import BadResults
-from .statistics import (FEWEST_BLOCKS, SEED, block_medians_of, interval_of, resampled_medians, verdict)
+from .statistics import FEWEST_BLOCKS, SEED, block_medians_of, interval_of, resampled_medians, verdict
 from .tidy import block_count
 
 ORDER = {"slower": 0, "faster": 1, "ambiguous": 2, "same": 3}

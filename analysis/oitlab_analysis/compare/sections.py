@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import pandas
 
-from .clock import frame_note, stage_note
 from ..formats import NOTHING
-from .labels import add_labels
+from .clock import frame_note, stage_note
 from .device_notes import note_of
+from .labels import add_labels
 from .statistics import OTHER_RUN, compare_setting, disagreements
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")

@@ -125,7 +125,7 @@ def verdict(interval: tuple[float, float] | None) -> str:
     if interval is None:
         return "ambiguous"
     low, high = interval
-    if 1 / SAME_WITHIN <= low and high <= SAME_WITHIN:
+    if low >= 1 / SAME_WITHIN and high <= SAME_WITHIN:
         return "same"
     if high < 1:
         return "faster"

@@ -18,8 +18,18 @@ from matplotlib.lines import Line2D
 from .. import formats
 from ..compare.labels import records
 from ..compare.sections import Section
-from .layout import (HALO, LABEL, TICKS, add_legend, characters, legend_height, log_axis, mark_beyond, plain,
-                     robust_limit)
+from .layout import (
+    HALO,
+    LABEL,
+    TICKS,
+    add_legend,
+    characters,
+    legend_height,
+    log_axis,
+    mark_beyond,
+    plain,
+    robust_limit,
+)
 from .quality_speed import MOST_VARIANTS_NAMED, looks_of
 from .style import GRID, PAGE, TALLEST
 

@@ -18,8 +18,17 @@ from .. import formats
 from ..compare.labels import local_labels
 from ..compare.memory import PREFIX
 from ..compare.sections import Section
-from .layout import (LABEL, TITLE_LINE, TITLE_SIZE, add_legend, characters, legend_height, panel_titles, plain,
-                     robust_limit)
+from .layout import (
+    LABEL,
+    TITLE_LINE,
+    TITLE_SIZE,
+    add_legend,
+    characters,
+    legend_height,
+    panel_titles,
+    plain,
+    robust_limit,
+)
 from .style import COLOURS, GRID, HATCHES, PAGE, TALLEST
 
 ROW = 0.17  # inches

@@ -9,13 +9,24 @@ from matplotlib.figure import Figure
 
 from ..compare.tidy import as_table
 from ..draw import bma_figures
-from .agreement import factor, order
-from .common import (build, clock_notes, columns, file_name, frame_ms, general_notes, head, pairs_of, published,
-                     size_of, without_ratios)
 from ..draw.bma_figures import PAPER_CHOICES, abuffer_cells, by_setting, scene_name, timed_intervals
+from .agreement import factor, order
+from .common import (
+    build,
+    clock_notes,
+    columns,
+    file_name,
+    frame_ms,
+    general_notes,
+    head,
+    pairs_of,
+    published,
+    size_of,
+    without_ratios,
+)
 from .measured import Context, Measurements, Want, choose, find, ratio
-from .published import STAND_INS, read
 from .paired_table import Column, Number, Table
+from .published import STAND_INS, read
 
 FIGURES = (3, 5, 7, 9)
 COMMAND = "oitlab run experiments/bma.toml"

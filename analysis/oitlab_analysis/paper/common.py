@@ -11,8 +11,8 @@ from ..compare.statistics import FEWEST_BLOCKS
 from ..compare.tidy import block_count
 from .agreement import Pairs
 from .measured import Context, Measurements, choose
-from .published import number
 from .paired_table import SLOW, Column, Number
+from .published import number
 
 
 def short(device: str) -> str:

@@ -3,11 +3,27 @@
 from __future__ import annotations
 
 from .agreement import factor, order
-from .common import (build, clock_notes, columns, file_name, frame_us, general_notes, head, is_full_size,
-                     mean_row, not_in_turn, pairs_of, published, short, size_of, stages_us, without_ratios)
+from .common import (
+    build,
+    clock_notes,
+    columns,
+    file_name,
+    frame_us,
+    general_notes,
+    head,
+    is_full_size,
+    mean_row,
+    not_in_turn,
+    pairs_of,
+    published,
+    short,
+    size_of,
+    stages_us,
+    without_ratios,
+)
 from .measured import Context, Measurements, Want, find, ratio
-from .published import STAND_INS, read
 from .paired_table import Column, Number, Table
+from .published import STAND_INS, read
 
 # What the paper measured: it leaves wrong pixels as they are.
 LUCID = {"depth_filter": 3, "alpha_threshold": 0, "repair": False, "visualize_errors": False,

@@ -108,7 +108,8 @@ def whole_markdown(tables: list[Table], pictures: list[tuple[str, str, bool]], w
     lines += [markdown(table) for table in tables]
     lines += ["## Figures", ""]
     for name, caption, drawn in pictures:
-        lines += [f"![{markdown_text(caption)}]({name}.png)\n" if drawn else f"*{name}: nothing was measured for it.*\n",
+        picture = f"![{markdown_text(caption)}]({name}.png)" if drawn else f"*{name}: nothing was measured for it.*"
+        lines += [f"{picture}\n",
                   f"{markdown_text(caption)}\n"]
     return "\n".join(lines)
 

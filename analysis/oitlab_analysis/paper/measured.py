@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..compare.statistics import Comparison, compare_cells
 from ..read.cells import Collection, collect, fingerprint, left_out
 from ..read.sources import BadResults, sources_in
-from ..compare.statistics import Comparison, compare_cells
 
 
 @dataclass

@@ -5,12 +5,11 @@ from __future__ import annotations
 import statistics
 
 from .agreement import factor, order
-from .common import (build, clock_notes, columns, file_name, general_notes, head, pairs_of, published,
-                     without_ratios)
+from .common import build, clock_notes, columns, file_name, general_notes, head, pairs_of, published, without_ratios
 from .lucidraster import LUCID
 from .measured import Context, Measurements, Want, find, ratio
-from .published import STAND_INS, read
 from .paired_table import Column, Number, Table
+from .published import STAND_INS, read
 
 HW = Want("blend", {"order": "submission"})
 # The rows of the paper that have a method here.
@@ -123,7 +122,8 @@ def memory(found: Measurements, device: str) -> Table:
     return Table(
         name=f"memory-{file_name(device)}", title="Memory of the methods themselves",
         source=f"{paper['source']}, {paper['table']}",
-        columns=[Column("scene", "scene")] + columns(metrics, "paper", device, tuple(m for m in MEMORY if m != "lucid")),
+        columns=[Column("scene", "scene"),
+                 *columns(metrics, "paper", device, tuple(m for m in MEMORY if m != "lucid"))],
         rows=rows, measured_on=head(context, used), agreement=agreement, notes=notes,
         missing=[row["scene"] for row in rows if not row.get("m.lucid")],
         command="oitlab run experiments/memory.toml",

@@ -113,10 +113,10 @@ def latex(table: Table) -> str:
     """
     align = "".join("r" if c.device else "l" for c in table.columns)
     devices = list(dict.fromkeys(c.device for c in table.columns if c.device))
-    letters = {device: letter for device, letter in zip(devices, "PMQRS")}
+    letters = dict(zip(devices, "PMQRS"))
     legend = ", ".join(f"{letter}: {latex_text(device)}" for device, letter in letters.items())
     names = []
-    for name, group in itertools.groupby(table.columns, key=lambda c: c.name.rstrip(" ‡")):
+    for _name, group in itertools.groupby(table.columns, key=lambda c: c.name.rstrip(" ‡")):
         group = list(group)
         # The last name has the mark, if any: only measured columns are marked.
         text = latex_text(group[-1].name)

@@ -10,8 +10,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from .checks import NotACell, cell_of, check_samples
 from ..formats import one_line
+from .checks import NotACell, cell_of, check_samples
 from .packs import read_bytes
 from .sources import HINT, BadResults, documents, sources_in
 

@@ -32,8 +32,8 @@ def _row(change: Change) -> list[str]:
         notes.append("image differs" + (f", RMSE {before} to {after}" if before != after else ""))
     if line := change.shaders.line():
         notes.append(line)
-    return [change.label,
-            formats.with_interval(change.ratio, *(change.interval or (None, None)), change.blocks), change.verdict, relative, change.blend_verdict, "; ".join(notes)]
+    ratio = formats.with_interval(change.ratio, *(change.interval or (None, None)), change.blocks)
+    return [change.label, ratio, change.verdict, relative, change.blend_verdict, "; ".join(notes)]
 
 
 HEAD = ["cell", "B / A [95%]", "verdict", "against blend [95%]", "verdict", "what changed"]

@@ -129,7 +129,7 @@ def _row(row: dict, texts: dict[str, str], place: tuple[int, int] | None) -> dic
     found["sort"] |= {name: key for _, name, column, _ in FIGURES
                       if name != "verdict" and (key := _sort_value(row, column)) is not None}
     if row["baseline"]:
-        found["hints"]["ratio"] = f"baseline: {row['baseline']}" + (f" · {row['device_note']}" if row["device_note"] else "")
+        found["hints"]["ratio"] = " · ".join(filter(None, [f"baseline: {row['baseline']}", row["device_note"]]))
     if row["clock_note"]:
         found["frame"] += " §"
         found["hints"]["frame"] = row["clock_note"]

@@ -20,7 +20,6 @@ from .markdown import markdown_report
 from .page import html_page
 from .table import TERMINAL_WIDTH, terminal_table, terminal_warnings
 
-
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 

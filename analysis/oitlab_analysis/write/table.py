@@ -7,10 +7,10 @@ import textwrap
 import pandas
 
 from .. import formats
-from ..formats import NOTHING
 from ..compare.device_notes import NOTED
 from ..compare.labels import records
 from ..compare.sections import Section
+from ..formats import NOTHING
 
 UNSETTLED = ("time_limit", "max_blocks")
 TERMINAL_WIDTH = 100

@@ -1,13 +1,16 @@
 """Times that were taken while the device ran slower than it can: what counts as such, and that the
 report leaves out such stages and says so; what it says of the clock that cells recorded."""
 
+import json
+import re
+
 import pytest
-from oitlab_analysis.draw import stacks
 from oitlab_analysis.compare import clock
+from oitlab_analysis.compare.sections import add_comparisons, make_sections
 from oitlab_analysis.compare.tidy import as_table
+from oitlab_analysis.draw import stacks
 from oitlab_analysis.read.cells import collect
 from oitlab_analysis.write.report import make_report
-from oitlab_analysis.compare.sections import add_comparisons, make_sections
 from synthetic import make_cell, with_slow_blocks, with_slow_stages, without_measurement, write_cell
 
 
@@ -99,7 +102,8 @@ def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
     assert "1 file was left out" in terminal and "/clock/rejected_blocks: missing" in terminal
     for text in (terminal, html, markdown):
         assert "settled, at full, in 2 of the 3 cells that recorded it; 3 blocks measured again" in text
-    marked = [row for row in html.split('{"scene":') if " §" in row and "hints" in row]
+    rows = json.loads(re.search(r'class="rows">(.*?)</script>', html)[1])["rows"]
+    marked = [json.dumps(row) for row in rows if row["frame"].endswith(" §")]
     listed = [line for line in markdown.splitlines() if line.startswith("- ") and "At full clock" in line]
     for teapot, tree in (marked, listed):
         assert "teapot" in teapot and "3 blocks left out" in teapot

@@ -5,10 +5,10 @@ import re
 
 import pytest
 from oitlab_analysis.__main__ import main
-from oitlab_analysis.read.sources import BadResults
 from oitlab_analysis.compare.diff import diff
-from oitlab_analysis.write.diff_text import markdown, terminal
 from oitlab_analysis.read.packs import without_folders
+from oitlab_analysis.read.sources import BadResults
+from oitlab_analysis.write.diff_text import markdown, terminal
 from synthetic import DEVICE, LAVAPIPE, make_cell, without_measurement, write_cell
 
 
@@ -126,7 +126,7 @@ def test_what_is_only_in_one_or_failed_is_named(tmp_path):
 def test_devices_are_never_compared_with_each_other(tmp_path):
     a = write(tmp_path / "a", {"lucid": 3.0}, device=DEVICE)
     b = write(tmp_path / "b", {"lucid": 3.0}, device=LAVAPIPE)
-    with pytest.raises(BadResults, match="no cell in common.*Example GPU 4000.*llvmpipe"):
+    with pytest.raises(BadResults, match=r"no cell in common.*Example GPU 4000.*llvmpipe"):
         diff(a, b)
 
 

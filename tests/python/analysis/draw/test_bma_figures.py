@@ -2,12 +2,11 @@
 
 import pandas
 import pytest
-from synthetic import make_cell
-
+from oitlab_analysis.compare.memory import memory_table
+from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.draw import bma_figures
 from oitlab_analysis.paper import bma_tables
-from oitlab_analysis.compare.tidy import as_table
-from oitlab_analysis.compare.memory import memory_table
+from synthetic import make_cell
 
 DEFAULTS = {"sort_memory": "bma", "max_fragments": 64, "mask": "stencil", "sort": "auto",
             "deep": "exact", "on_overflow": "grow", "initial_depth": 4.0, "node_color": "rgba32f",

@@ -7,8 +7,8 @@ import pytest
 from oitlab_analysis.compare.quantities import find_quantity, varying
 from oitlab_analysis.draw import curves
 from oitlab_analysis.draw.curves import ALPHA_THRESHOLD, DEPTH_FILTER, Curve, check, draw_curves, lines_of
-from oitlab_analysis.read.sources import BadResults
 from oitlab_analysis.draw.style import TALLEST
+from oitlab_analysis.read.sources import BadResults
 from sections import drawn, section_of
 from synthetic import lucid_cell, make_cell, make_results, write_cell
 
@@ -47,7 +47,7 @@ def test_a_panel_for_each_scene_and_a_line_for_each_mode(peeling):
 
 def test_times_over_a_parameter_without_panels(peeling):
     axes, = drawn(draw_curves, peeling, (Curve("layers", "time"),)).axes
-    assert len(axes.lines) == 4 and "frame time, ms" == axes.get_ylabel()
+    assert len(axes.lines) == 4 and axes.get_ylabel() == "frame time, ms"
     assert points(axes.lines[0])[2][1] == pytest.approx(8, rel=0.05)
 
 

@@ -4,8 +4,7 @@ import itertools
 
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from oitlab_analysis.draw.layout import (darker, log_axis, panel_grid, panel_titles, place_labels, plain,
-                                         robust_limit)
+from oitlab_analysis.draw.layout import darker, log_axis, panel_grid, panel_titles, place_labels, plain, robust_limit
 from oitlab_analysis.draw.style import COLOURS, TALLEST, method_looks, series_look
 
 LONG = "the cathedral of a town with a rather long name, seen from the hill in the fog of a November at "
@@ -79,7 +78,7 @@ def test_at_most_eight_colours_and_then_other_markers():
 
 @pytest.mark.parametrize("low, high", [(1, 1.2), (0.9, 1.1), (1, 9), (0.003, 4000), (5, 5.01)])
 def test_a_log_axis_has_two_to_four_plain_numbers(low, high):
-    figure, (axes,) = panel_grid([""], 1, 2)
+    _figure, (axes,) = panel_grid([""], 1, 2)
     log_axis(axes, "x", low, high)
     texts = [text.get_text() for text in axes.get_xticklabels()]
     assert 2 <= len(texts) <= 4 and not any("10^" in text for text in texts)

@@ -4,11 +4,11 @@ import itertools
 
 import numpy
 import pytest
+from oitlab_analysis.compare.metrics import METRICS, wrong_order
+from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.draw import quality_speed
 from oitlab_analysis.draw.style import footnotes
-from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.read.cells import collect
-from oitlab_analysis.compare.metrics import METRICS, wrong_order
 from sections import drawn, section_of
 from synthetic import DEVICE, lucid_cell, make_cell, make_results, write_cell
 

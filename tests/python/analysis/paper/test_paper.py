@@ -12,8 +12,18 @@ from oitlab_analysis.paper import agreement, published
 from oitlab_analysis.paper.make import make_paper
 from oitlab_analysis.paper.measured import Want, find, gather, ratio
 from oitlab_analysis.paper.paired_table import LATEX, Column, Number, Table, latex, latex_text, markdown, write_csv
-from synthetic import (DEVICE, LAVAPIPE, LUCID_STAGES, PAPER_SCENES, lucid_cell, make_cell, with_slow_blocks,
-                       with_slow_stages, without_measurement, write_cell)
+from synthetic import (
+    DEVICE,
+    LAVAPIPE,
+    LUCID_STAGES,
+    PAPER_SCENES,
+    lucid_cell,
+    make_cell,
+    with_slow_blocks,
+    with_slow_stages,
+    without_measurement,
+    write_cell,
+)
 
 SIZE = (2560, 1330)
 SMALL = {"blocks": 7, "frames": 1}
@@ -443,7 +453,8 @@ def test_texts_are_escaped_in_each_format(tmp_path):
     tex = latex(table)
     assert r"50\% of a\_b \& \$c" in tex and r"GPU\_1" in tex and "µ" not in tex
     write_csv(table, tmp_path / "t.csv")
-    rows = list(csv.reader(open(tmp_path / "t.csv", encoding="utf-8")))
+    with open(tmp_path / "t.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
     assert rows[1] == ["a_b|c", "1.5", "1.4", "1.6"] and rows[2] == ["gap", "", "", ""]
     assert latex_text("".join(LATEX)).isascii()
 

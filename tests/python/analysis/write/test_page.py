@@ -7,7 +7,7 @@ import pytest
 from browser import MISSING, Browser
 from oitlab_analysis.write.report import make_report
 from PIL import Image
-from synthetic import make_results, make_sweep, without_measurement, make_cell, write_cell
+from synthetic import make_cell, make_results, make_sweep, without_measurement, write_cell
 
 pytestmark = pytest.mark.skipif(MISSING is not None, reason=str(MISSING))
 
@@ -181,7 +181,7 @@ def test_the_address_says_what_is_shown_and_shows_it(page, folder):
 
 
 def test_the_line_between_a_and_b_can_be_dragged(page):
-    _, middle, left, top, width, _ = point_of(page, ".viewer canvas")
+    _, middle, left, _top, width, _ = point_of(page, ".viewer canvas")
     page.drag((left + width / 2, middle), (left + width / 4, middle))
     assert page.run("return +document.querySelector('.viewer .slider').value") == pytest.approx(250, abs=4)
     assert [pixel(page, x, 0.9) for x in (0.2, 0.3)] == [[10, 20, 30], [40, 20, 25]]

@@ -14,14 +14,13 @@ from html.parser import HTMLParser
 
 import numpy
 import pytest
-from program import ROOT
 from oitlab_analysis.compare.tidy import as_table
 from oitlab_analysis.read.cells import collect
 from oitlab_analysis.write.images import smaller
 from oitlab_analysis.write.report import make_report
 from PIL import Image
-from synthetic import (DEVICE, LAVAPIPE, make_cell, make_results, without_measurement, write_cell,
-                       write_image)
+from program import ROOT
+from synthetic import DEVICE, LAVAPIPE, make_cell, make_results, without_measurement, write_cell, write_image
 
 
 def run(*arguments):
@@ -44,7 +43,7 @@ def embedded_pictures(html):
 class Page(HTMLParser):
     """What a test needs of a page: its resources, its tables and whether its tags match."""
 
-    VOID = {"meta", "img", "br", "link", "input"}
+    VOID = frozenset({"meta", "img", "br", "link", "input"})
 
     def __init__(self, text):
         super().__init__()
@@ -132,7 +131,7 @@ def test_help_says_what_is_written_and_the_exit_codes():
 
 
 def test_page_is_self_contained_and_well_formed(results, page):
-    assert len(re.findall(r'<figure class="chart lead">\s*<svg ', page.text)) == 1, "quality against speed, within the page"
+    assert len(re.findall(r'<figure class="chart lead">\s*<svg ', page.text)) == 1
     assert len(page.sources) == 4  # the other charts: per scene, times, stages, memory
     assert all(source.startswith("data:image/svg+xml") for source in page.sources)
     pictures = embedded_pictures(page.text)
