@@ -1,0 +1,115 @@
+// Every variant of every shader compiles, and the driver makes a pipeline of it. Nothing is drawn
+// with them, which is where a CPU device spends its time; .ci/run does this before the long tests.
+#include <set>
+
+#include "lucid/programs.h"
+#include "measure/clock_probe.h"
+#include "render/depth_complexity.h"
+#include "support/gpu.h"
+#include "util/error.h"
+#include "util/paths.h"
+
+namespace oitlab::testing {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+/// Values that may choose a shader: all of an enumeration or a flag, the ends of a range.
+std::vector<std::string> valuesOf(const Parameter& parameter) {
+  const std::string type = parameter.typeName();
+  if (type == "enum") return parameter.choices;
+  if (type == "bool") return {"false", "true"};
+  if (type == "int")
+    return {std::to_string(std::int64_t(parameter.min)),
+            std::to_string(std::int64_t(parameter.max))};
+  return {std::to_string(parameter.min), std::to_string(parameter.max)};
+}
+
+bool isChoice(const Parameter& parameter) {
+  return parameter.typeName() == "enum" || parameter.typeName() == "bool";
+}
+
+/// The defaults, each parameter at each of its values, and all pairs of choices.
+std::vector<Given> variantsOf(const MethodInfo& method) {
+  std::vector<Given> variants = {{}};
+  const auto& parameters = method.parameters;
+  for (std::size_t a = 0; a < parameters.size(); ++a)
+    for (const std::string& value : valuesOf(parameters[a])) {
+      variants.push_back({{parameters[a].name, value}});
+      for (std::size_t b = a + 1; b < parameters.size() && isChoice(parameters[a]); ++b)
+        if (isChoice(parameters[b]))
+          for (const std::string& other : valuesOf(parameters[b]))
+            variants.push_back({{parameters[a].name, value}, {parameters[b].name, other}});
+    }
+  return variants;
+}
+
+/// Programs of lucid that a frame would only make when it needs them.
+void makeAll(const lucid::Programs& programs) {
+  for (const auto& program : programs.blocks) *program;
+  for (const auto* program :
+       {&programs.ordered, &programs.sortLow, &programs.sortHigh, &programs.lowRaster,
+        &programs.highRaster, &programs.repair, &programs.deepCapture, &programs.deepResolve})
+    **program;
+}
+
+class ShaderVariants : public GpuTest {
+ protected:
+  /// Combinations that a method refuses (InputError) or the driver (DeviceError) have a message for
+  /// the user; text that does not compile is a failure.
+  template <typename Make>
+  void make(const std::string& what, const Make& makeIt) {
+    try {
+      makeIt();
+      ++made_;
+    } catch (const std::exception& error) {
+      EXPECT_EQ(std::string(error.what()).find("does not compile"), std::string::npos)
+          << what << ": " << error.what();
+    }
+  }
+  int made_ = 0;
+};
+
+TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
+  // Colours of triangles, textures, and opaque surfaces: what lucid has separate code for.
+  std::vector<std::unique_ptr<RenderFixture>> fixtures;
+  for (const char* scene : {"planes", "scrubpine", "sanmiguel"})
+    fixtures.push_back(std::make_unique<RenderFixture>(loadScene({scene, {}, 0.01f}), 32, 18,
+                                                       std::nullopt, TargetFormat::rgba16f));
+  const Device& device = sharedDevice();
+  int variants = 0;
+  for (const auto& [name, method] : methods()) {
+    if (!method.missing(device.info()).empty()) continue;
+    for (const Given& given : variantsOf(method)) {
+      std::string what = name;
+      for (const auto& [key, value] : given) what += " " + key + "=" + value;
+      make(what, [&] { fixtures.front()->prepare(name, given); });
+      ++variants;
+      if (name == "lucid")
+        for (const auto& fixture : fixtures)
+          for (const bool irregular : {false, true})
+            make(what, [&] {
+              const Parameters parameters(method.parameters, given, name);
+              makeAll({device, fixture->scene(), irregular, irregular, "rgba16f", parameters});
+            });
+    }
+  }
+  ClockProbe probe(device, 1, 1);
+  fixtures.back()->render("blend");
+  countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());
+  EXPECT_GT(made_, variants * 3 / 4) << "most combinations are allowed";
+
+  std::set<std::string> compiled;
+  for (const auto& [label, hash] : device.shaders().hashes())
+    compiled.insert(label.substr(0, label.find(' ')));
+  const std::filesystem::path root = dataRoot() / "shaders";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".comp" && extension != ".vert" && extension != ".frag") continue;
+    const std::string name = entry.path().lexically_relative(root).generic_string();
+    EXPECT_TRUE(compiled.contains(name)) << "no variant of shaders/" << name << " was compiled";
+  }
+}
+
+}  // namespace
+}  // namespace oitlab::testing
