@@ -83,7 +83,7 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
     for (const Given& given : variantsOf(method)) {
       std::string what = name;
       for (const auto& [key, value] : given) what += " " + key + "=" + value;
-      make(what, [&] { fixtures.front()->prepare(name, given); });
+      make(what, [&] { fixtures.front()->make(name, given); });
       ++variants;
       if (name == "lucid")
         for (const auto& fixture : fixtures)
