@@ -147,14 +147,21 @@ def _ratio(before: list[float], after: list[float]) -> tuple[float, tuple[float,
     return ratio, interval_of(resampled_medians(after, SEEDS[1]) / resampled_medians(before, SEEDS[0]))
 
 
-def _blends(before: dict, after: dict, cells: tuple[dict, dict]) -> tuple[dict, dict] | None:
+Blends = dict[str, dict[str, dict]]  # group -> key -> the measured blend cell
+
+
+def blends_of(cells: dict[str, dict]) -> Blends:
+    found: Blends = {}
+    for key, cell in cells.items():
+        if cell["method"] == "blend" and cell["status"] == "ok":
+            found.setdefault(cell["group"], {})[key] = cell
+    return found
+
+
+def _blends(before: dict, after: dict, blends: tuple[Blends, Blends]) -> tuple[dict, dict] | None:
     """The same blend cell of A and of B, each measured in turn with its cell; submission order if
     there are several."""
-    found = [
-        {key: c for key, c in own.items()
-         if c["group"] == cell["group"] and c["method"] == "blend" and c["status"] == "ok"}
-        for cell, own in zip((before, after), cells)
-    ]
+    found = [own.get(cell["group"], {}) for cell, own in zip((before, after), blends)]
     common = sorted((c["parameters"].get("order") != "submission", key)
                     for key, c in found[0].items() if key in found[1])
     return (found[0][common[0][1]], found[1][common[0][1]]) if common else None
@@ -168,10 +175,10 @@ def _over_blend(cell: dict, blend: dict) -> list[float]:
     return [own[block] / base[block] for block in sorted(own.keys() & base.keys())]
 
 
-def compare_pair(before: dict, after: dict, cells: tuple[dict, dict], label: str) -> Change:
-    """Both must be measured; `cells` are all of A and of B, to find the blend of each."""
+def compare_pair(before: dict, after: dict, all_blends: tuple[Blends, Blends], label: str) -> Change:
+    """Both must be measured; `all_blends` are those of A and of B, to find the blend of each."""
     ratio, interval = _ratio(list(block_medians_of(before).values()), list(block_medians_of(after).values()))
-    blends = _blends(before, after, cells)
+    blends = _blends(before, after, all_blends)
     relative = None
     if blends:
         ratios = [_over_blend(c, blend) for c, blend in zip((before, after), blends)]
@@ -199,14 +206,20 @@ def diff(folder_a: Path, folder_b: Path) -> Diff:
         raise BadResults(
             f"{folder_a} and {folder_b} have no cell in common (devices {', '.join(devices[0])} and "
             f"{', '.join(devices[1])}): nothing to compare")
-    changes = []
+    unmeasured: list[str] = []
+    changes, blends = [], (blends_of(a), blends_of(b))
     for key in common:
         states = a[key]["status"], b[key]["status"]
         if states == ("ok", "ok"):
-            changes.append(compare_pair(a[key], b[key], (a, b), label_of(b[key], varying)))
+            changes.append(compare_pair(a[key], b[key], blends, label_of(b[key], varying)))
         else:
             reason = b[key]["reason"] or a[key]["reason"]
-            warnings.append(f"{label_of(b[key], varying)}: {states[0]} in A, {states[1]} in B ({reason}).")
+            unmeasured.append(f"{label_of(b[key], varying)}: {states[0]} in A, {states[1]} in B ({reason}).")
+    warnings += unmeasured[:MOST_LISTED]
+    if len(unmeasured) > MOST_LISTED:
+        warnings.append(f"{len(unmeasured) - MOST_LISTED} more cells were not measured in A or in B.")
+    if not changes:
+        raise BadResults(f"{folder_a} and {folder_b} have no measured cell in common: {warnings[-1]}")
     changes.sort(key=lambda c: (c.cell["device"]["name"], ORDER[c.verdict], -abs(numpy.log(c.ratio))))
     return Diff(changes, warnings + _measurement_warnings(changes, a, b))
 

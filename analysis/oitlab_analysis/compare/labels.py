@@ -38,13 +38,15 @@ def parameter_text(parameters: dict[str, object]) -> str:
 
 def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
     """For each method the parameters that have more than one value among its cells."""
-    result = {}
-    for method, cells in table.groupby("method"):
-        names = [name for name in table.columns if name.startswith("param.")]
-        # As text, because 1, 1.0 and True are equal to Python but not to a reader.
-        varying = [name for name in names if cells[name].map(str).nunique(dropna=False) > 1]
-        result[method] = [name[len("param."):] for name in varying]
-    return result
+    names = [name for name in table.columns if name.startswith("param.")]
+    if not names:
+        return {method: [] for method in table["method"].unique()}
+    # As text, because 1, 1.0 and True are equal to Python but not to a reader.
+    texts = pandas.DataFrame({name: table[name].map(str) for name in names})
+    counts = texts.groupby(table["method"]).nunique()
+    varying = counts.to_numpy() > 1
+    return {method: [name[len("param."):] for name, varies in zip(names, row) if varies]
+            for method, row in zip(counts.index, varying)}
 
 
 def local_labels(table: pandas.DataFrame) -> list[str]:
@@ -78,15 +80,13 @@ def varying_knobs(table: pandas.DataFrame) -> dict[str, list[str]]:
     A content hash only counts where nothing else explains it: it changes with detail and opacity.
     Failed cells may lack it.
     """
-    result = {}
-    for scene, cells in table.groupby("scene"):
-        knobs = [k for k in SCENE_KNOBS[:2] if cells[k].nunique(dropna=False) > 1]
-        if any(
-            same["content_hash"].nunique() > 1
-            for _, same in cells.groupby(["opacity", "detail"], dropna=False)
-        ):
-            knobs.append("content_hash")
-        result[scene] = knobs
+    counts = table.groupby("scene")[list(SCENE_KNOBS[:2])].nunique(dropna=False)
+    result = {scene: [knob for knob, count in zip(SCENE_KNOBS, row) if count > 1]
+              for scene, row in zip(counts.index, counts.to_numpy())}
+    hashes = table.groupby(["scene", "opacity", "detail"], dropna=False)["content_hash"].nunique()
+    for (scene, *_), count in hashes.items():
+        if count > 1 and "content_hash" not in result[scene]:
+            result[scene].append("content_hash")
     return result
 
 

@@ -18,6 +18,7 @@ from .statistics import OTHER_RUN, compare_setting, disagreements
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")
 SETTING = ("scene", "opacity", "detail", "content_hash", "view", "width", "height", "format")
+MOST_SECTIONS = 60  # experiments, devices and builds of one report
 RELEASE_BUILDS = ("release", "relwithdebinfo", "minsizerel")
 
 
@@ -76,8 +77,10 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
 
 
 def make_sections(cells: dict[str, dict], table: pandas.DataFrame) -> list[Section]:
-    """One section for each context of the table, whose cells are given by key; largest first within an experiment."""
+    """One section for each context of the table, whose cells are given by key; largest first within an
+    experiment. Of more than MOST_SECTIONS contexts those with most cells."""
     groups = [group for _, group in table.groupby(list(CONTEXT), dropna=False)]
+    groups = sorted(groups, key=len, reverse=True)[:MOST_SECTIONS]
     groups.sort(key=lambda group: (group["experiment"].iloc[0], -len(group)))
     # Only the parts of the context that differ are needed to tell titles apart.
     varying = [c for c in ("commit", "build", "validation") if table[c].nunique() > 1]
@@ -182,7 +185,10 @@ def _measurement_warnings(cells: list[dict]) -> list[str]:
 
 
 def mixture_warnings(table: pandas.DataFrame) -> list[str]:
-    """What the folder mixes, and that it was kept apart."""
+    """What the cells mix, and that it was kept apart; how many contexts are not shown."""
+    contexts = table.groupby(list(CONTEXT), dropna=False).ngroups
+    beyond = [f"Only {MOST_SECTIONS} of {contexts} sections are shown; cells.csv has all cells."] \
+        if contexts > MOST_SECTIONS else []
     named = {"device": "devices", "driver_info": "drivers", "commit": "commits", "build": "build types"}
     mixed = [
         f"{table[column].nunique()} {plural}"
@@ -192,5 +198,5 @@ def mixture_warnings(table: pandas.DataFrame) -> list[str]:
     if table["validation"].nunique() > 1:
         mixed.append("runs with and without validation layers")
     if not mixed:
-        return []
-    return [f"The folder holds cells of {', '.join(mixed)}: kept apart, each in its own section."]
+        return beyond
+    return [f"These are cells of {', '.join(mixed)}: kept apart, each in its own section.", *beyond]

@@ -22,7 +22,7 @@ from .style import STYLE, Chart, footnotes, hints_of, save
 # as far as both numbers allow; --all-charts draws the rest.
 PER_SECTION = 6
 IN_ALL = 18
-MOST_SECTIONS = 40  # sections with a chart: a report of more is a list of tables
+MOST_SECTIONS = 18  # with a chart: a report of more sections is a list of tables
 FEW_CHARTS = 4
 
 

@@ -132,11 +132,13 @@ def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> float:
 
 
 def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: float) -> None:
-    """All dots of one variant at once: an artist for each would be slow."""
+    """All dots of one look at once: an artist for each would be slow."""
     measured = [(y, row) for y, row in rows if row["status"] == "ok"]
-    for label in dict.fromkeys(row["label"] for _, row in measured):
-        own = [(y, row) for y, row in measured if row["label"] == label]
-        look = looks[label]
+    by_look: dict[tuple, list[tuple[float, dict]]] = {}
+    for y, row in measured:
+        by_look.setdefault((looks[row["label"]]["color"], looks[row["label"]]["marker"]), []).append((y, row))
+    for own in by_look.values():
+        look = looks[own[0][1]["label"]]
         inside = [(y, row) for y, row in own if row["frame_ms.median"] <= limit]
         heights = [y for y, _ in inside]
         sure = [(y, row) for y, row in inside if formats.is_number(row["frame_ms.ci_low"])]
@@ -146,7 +148,7 @@ def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: f
         axes.plot([row["frame_ms.median"] for _, row in inside], heights, linestyle="none",
                   marker=look["marker"], color=look["color"], markersize=4.2, markeredgecolor="black",
                   markeredgewidth=0.35)
-        mark_beyond(axes, [(0, y, f"{label}: {formats.number(row['frame_ms.median'])}") for y, row in own
+        mark_beyond(axes, [(0, y, f"{row['label']}: {formats.number(row['frame_ms.median'])}") for y, row in own
                            if row["frame_ms.median"] > limit], "x", "black")
     unmeasured: dict[float, list[dict]] = {}
     for y, row in rows:

@@ -23,6 +23,7 @@ LEFT, GAP = 0.68, 0.32
 TITLE_SIZE = 8
 CHARACTER = 0.6  # of the font size: the mean width of a character of DejaVu Sans
 MOST_TITLE_LINES = 3
+MOST_LABELS = 60  # points of one panel that a label is tried for
 HALO = [withStroke(linewidth=1.6, foreground="white")]  # a text over a line stays legible
 
 
@@ -163,9 +164,9 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
     for x0, y0, x1, y1 in lines:
         (u0, v0), (u1, v1) = axes.transData.transform([(x0, y0), (x1, y1)]) * scale
         marks.append((min(u0, u1), min(v0, v1) - 0.5, max(u0, u1), max(v0, v1) + 0.5))
-    taken: list[tuple[float, float, float, float]] = []
+    taken = numpy.asarray(marks).reshape(-1, 4)
     written = []
-    for (x, y, text, colour), (px, py) in zip(points, at):
+    for (x, y, text, colour), (px, py) in list(zip(points, at))[:MOST_LABELS]:
         lines = text.split("\n")
         width = max(map(len, lines)) * size * CHARACTER
         height = len(lines) * size * 1.2
@@ -174,8 +175,8 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
             y0 = py + dy - {"bottom": 0, "center": height / 2, "top": height}[vertical]
             box = (x0, y0, x0 + width, y0 + height)
             inside = box[0] >= left - 2 and box[2] <= right + 6 and box[1] >= bottom and box[3] <= top + 2
-            if inside and not any(_overlap(box, other) for other in marks + taken):
-                taken.append(box)
+            if inside and not _overlaps(box, taken):
+                taken = numpy.vstack([taken, box])
                 axes.annotate(text, (x, y), (dx, dy), textcoords="offset points", ha=horizontal, va=vertical,
                               size=size, color=darker(colour), linespacing=1.0, zorder=4,
                               annotation_clip=False, path_effects=HALO)
@@ -196,8 +197,10 @@ def _offsets() -> list[tuple[float, float, str, str]]:
     return found
 
 
-def _overlap(one: tuple, two: tuple) -> bool:
-    return one[0] < two[2] and two[0] < one[2] and one[1] < two[3] and two[1] < one[3]
+def _overlaps(box: tuple[float, float, float, float], others: numpy.ndarray) -> bool:
+    """Whether a box (left, bottom, right, top) covers part of any of the others."""
+    return bool(((box[0] < others[:, 2]) & (others[:, 0] < box[2]) & (box[1] < others[:, 3])
+                 & (others[:, 1] < box[3])).any())
 
 
 def darker(colour: str) -> str:

@@ -25,6 +25,7 @@ from .style import MARKERS, mark_point, method_looks
 PANELS_PER_CHART = 12
 PANEL_COLUMNS = 3
 MOST_VARIANTS_NAMED = 5
+MOST_HINTS = 300  # points of one panel with an artist each, for the pointer
 MOST_BARS = 24  # points with intervals in one panel: more are a smear
 LABEL_CHARACTERS = 20
 FRONT = {"color": "black", "linewidth": 0.9, "linestyle": "--", "zorder": 1}
@@ -161,7 +162,9 @@ def _draw_points(axes: Axes, cells: pandas.DataFrame, times: numpy.ndarray, ends
         axes.hlines(errors[sure], ends[0][sure], ends[1][sure], colors=[colours[i] for i in sure], linewidth=1.1,
                     zorder=2)
     inside = times <= limit
-    for index, label in enumerate(labels):
+    if len(times) > MOST_HINTS:
+        axes.scatter(times[inside], errors[inside], s=8, c=[c for c, i in zip(colours, inside) if i], zorder=3)
+    for index, label in enumerate(labels if len(times) <= MOST_HINTS else ()):
         if inside[index]:
             point, = axes.plot(times[index:index + 1], errors[index:index + 1], linestyle="none", markersize=5,
                                markeredgecolor="black", markeredgewidth=0.4, zorder=3, clip_on=False,

@@ -14,6 +14,8 @@ from ..compare.statistics import Comparison, compare_cells
 from ..read.cells import Collection, collect, fingerprint, left_out
 from ..read.sources import BadResults, sources_in
 
+MOST_DEVICES, MOST_CONTEXTS = 8, 40  # each device has its own tables, each context may fill them
+
 
 @dataclass
 class Context:
@@ -81,9 +83,21 @@ def gather(paths: list[Path]) -> Measurements:
             _context(contexts, cell).cells.append(cell)
     if repeated:
         warnings.append(f"{repeated} cells were given twice, and count once.")
+    contexts, beyond = _largest(contexts)
+    warnings += beyond
     for context in contexts.values():
         context.cells.sort(key=lambda cell: cell["provenance"].get("date") or "")
     return Measurements(list(contexts.values()), warnings + _states([collection for _, collection in collections]))
+
+
+def _largest(contexts: dict[tuple, Context]) -> tuple[dict[tuple, Context], list[str]]:
+    """The contexts with most cells, of a bounded number of devices, and what is said of the others."""
+    order = sorted(contexts, key=lambda key: -len(contexts[key].cells))
+    devices = list(dict.fromkeys(key[0] for key in order))[:MOST_DEVICES]
+    kept = [key for key in order if key[0] in devices][:MOST_CONTEXTS]
+    beyond = len(contexts) - len(kept)
+    said = [f"{beyond} of {len(contexts)} devices, commits and builds were left out: those with fewest cells."]
+    return {key: contexts[key] for key in kept}, said if beyond else []
 
 
 def _context(contexts: dict[tuple, Context], cell: dict) -> Context:

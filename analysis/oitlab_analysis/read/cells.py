@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..formats import one_line
-from .checks import NotACell, cell_of, check_samples
+from .checks import cell_of, check_samples
+from .limits import Budget, NotACell
 from .packs import read_bytes
 from .sources import HINT, BadResults, documents, sources_in
 
@@ -49,7 +50,7 @@ def collect(*paths: Path) -> Collection:
     sources: dict[str, Path] = {}
     problems: list[Problem] = []
     seen: set[str] = set()
-    repeated = 0
+    repeated, budget = 0, Budget()
     found = sources_in(list(paths))
     for source in found:
         own: set[tuple[str, str]] = set()
@@ -61,6 +62,7 @@ def collect(*paths: Path) -> Collection:
                 identity = cell["experiment"], cell["id"]
                 if identity in own:
                     raise NotACell(f"its id {cell['id']} is that of another file of this experiment")
+                budget.spend(cell, packed=source.is_file())
             except NotACell as error:
                 problems.append(Problem(name, one_line(str(error))))
                 continue

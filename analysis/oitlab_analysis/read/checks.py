@@ -3,39 +3,26 @@
 from __future__ import annotations
 
 import json
-import re
 
 import numpy
 
 from ..formats import is_number, one_line
+from .limits import LONGEST_NAME, NotACell, check_shape, parse
 
 SCHEMA = 1
 STATUSES = ("ok", "failed", "skipped")
 FRAME_STATISTICS = ("median", "q1", "q3", "mean", "min", "max", "p95")
-LONG_INTEGER = re.compile(rb"[0-9]{19}")
 DAY_MS = 24 * 3600 * 1000
-
-
-class NotACell(Exception):
-    """One file is not a whole cell; the message says what was found and what was wanted."""
 
 
 def cell_of(content: bytes | dict) -> dict:
     """The cell in a file's content, or in a document that was parsed already. Raises NotACell."""
-    cell = content
-    if isinstance(content, bytes):
-        try:
-            # Checking every whole number is slow, and few files hold one that could be too long.
-            limits = {"parse_int": _int_of_64_bits} if LONG_INTEGER.search(content) else {}
-            cell = json.loads(content.decode("utf-8"), parse_constant=_refuse_constant, **limits)
-        except RecursionError as error:
-            raise NotACell("not JSON that a cell can hold: nested too deeply") from error
-        except ValueError as error:  # bad JSON or bad UTF-8
-            raise NotACell(f"half-written or not JSON: {error}") from error
+    cell = parse(content) if isinstance(content, bytes) else content
     if not isinstance(cell, dict) or "schema" not in cell:
         raise NotACell("foreign JSON: it has no /schema")
     if cell["schema"] != SCHEMA:
         raise NotACell(f"/schema: found {cell['schema']!r}, wanted {SCHEMA}")
+    check_shape(cell)
     cell = _printable(cell)
     check_cell(cell)
     return cell
@@ -57,17 +44,6 @@ def _printable(value: object) -> object:
         return one_line(value)
     if isinstance(value, dict):
         return {one_line(key): _printable(child) for key, child in value.items()}
-    return value
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is not a JSON number")
-
-
-def _int_of_64_bits(digits: str) -> int:
-    value = int(digits)
-    if abs(value) >= 2**64:
-        raise ValueError("a whole number of more than 64 bits")
     return value
 
 
@@ -95,6 +71,10 @@ def _get_if_there(cell: dict, pointer: str, wanted: str, good) -> None:
         raise NotACell(f"/{'/'.join(parents)}: found {json.dumps(value)[:60]}, wanted an object")
     if value.get(key) is not None:
         _get(cell, pointer, wanted, good)
+
+
+def _is_name(value: object) -> bool:
+    return isinstance(value, str) and value.strip() != "" and len(value) <= LONGEST_NAME
 
 
 def _is_text(value: object) -> bool:
@@ -146,7 +126,7 @@ def check_cell(cell: dict) -> None:
     """Checks everything that the report uses. Raises NotACell with a JSON pointer."""
     _get(cell, "/status", "ok, failed or skipped", lambda v: v in STATUSES)
     for pointer in ("id", "experiment", "view", "format", "method", "scene/name", "device/name"):
-        _get(cell, f"/{pointer}", "a name", lambda v: isinstance(v, str) and v.strip() != "")
+        _get(cell, f"/{pointer}", f"a name of at most {LONGEST_NAME} characters", _is_name)
     for pointer in ("reason", "group", "device/type", "device/driver", "provenance/commit"):
         _get(cell, f"/{pointer}", "text", _is_text)
     _get(cell, "/provenance/build", "text", _is_text)
@@ -157,7 +137,7 @@ def check_cell(cell: dict) -> None:
         _get_if_there(cell, f"/{pointer}", "text", _is_text)
     for pointer in ("scene/source", "scene/content_hash", "provenance/command", "image_hash"):
         _get_if_there(cell, f"/{pointer}", "text", _is_text)
-    _get_if_there(cell, "/profile", "a name", _is_text)
+    _get_if_there(cell, "/profile", "a name", _is_name)
     for pointer in ("seed", "scene/triangles", "scene/transparent_triangles", "scene/opacity"):
         _get_if_there(cell, f"/{pointer}", "a number", is_number)
     for pointer in ("scene/detail", "device/subgroup_size"):

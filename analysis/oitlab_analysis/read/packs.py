@@ -12,12 +12,11 @@ import json
 import zlib
 from pathlib import Path
 
-from .checks import NotACell, cell_of
+from .checks import cell_of
+from .limits import LARGEST, MOST_CELLS, NotACell, most_unpacked, parse
 
 PACK_SUFFIX = ".json.gz"
 PACK = "oitlab cells"
-# A cell of 100,000 samples takes about 5 MB. What unpacks to more than this is no results file.
-LARGEST = 1 << 30
 
 
 def read_bytes(path: Path) -> bytes:
@@ -25,31 +24,31 @@ def read_bytes(path: Path) -> bytes:
     if not path.name.endswith((".json", PACK_SUFFIX)) or path.name.startswith("."):
         raise NotACell("a temporary file of a running or killed run, or a foreign one")
     try:
-        if path.suffix == ".json":
-            return path.read_bytes()
-        with gzip.open(path) as file:
-            content = file.read(LARGEST + 1)
+        size = path.stat().st_size
+        most = LARGEST if path.suffix == ".json" else most_unpacked(size)
+        with path.open("rb") if path.suffix == ".json" else gzip.open(path) as file:
+            content = file.read(most + 1)
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:
         raise NotACell(f"half-written or not compressed JSON: {error}") from error
     except OSError as error:
         raise NotACell(f"cannot be read: {error.strerror}") from error
-    if len(content) > LARGEST:
-        raise NotACell(f"unpacks to more than {LARGEST >> 20} MiB")
+    if len(content) > most:
+        raise NotACell(f"holds more than {most >> 20} MiB, the most that a file of {size >> 10} KiB may")
     return content
 
 
 def read_pack(path: Path) -> list[bytes | dict]:
     """The cells of a pack, unchecked; a compressed cell is a pack of one. Raises NotACell."""
     content = read_bytes(path)
-    try:
-        document = json.loads(content)
-    except (ValueError, RecursionError) as error:
-        raise NotACell(f"half-written or not JSON: {error}") from error
+    document = parse(content)
     if not isinstance(document, dict) or document.get("pack") != PACK:
         return [content]
+    del content
     cells = document.get("cells")
     if document.get("schema") != 1 or not isinstance(cells, list):
         raise NotACell("not a pack of cells that this version can read")
+    if len(cells) > MOST_CELLS:
+        raise NotACell(f"a pack of {len(cells)} cells, at most {MOST_CELLS}")
     return cells
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from .checks import NotACell
+from .limits import NotACell
 from .packs import PACK_SUFFIX, read_bytes, read_pack
 
 HINT = "run an experiment first, for example: oitlab run experiments/quickstart.toml"
@@ -40,7 +40,9 @@ def documents(source: Path) -> Iterator[tuple[str, bytes | dict | NotACell]]:
     it cannot be read. Raises BadResults."""
     if not source.exists():
         raise BadResults(f"{source}: no such folder; {HINT}")
-    if source.is_file():
+    if source.is_file() or not source.is_dir():  # a device or a pipe is read by nobody
+        if not source.is_file():
+            raise BadResults(f"{source}: neither a file nor a folder")
         yield from _packed(source)
         return
     if not (source / "cells").is_dir():
