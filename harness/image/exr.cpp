@@ -56,7 +56,7 @@ class MemoryOutput : public Imf::OStream {
   std::uint64_t position_ = 0;
 };
 
-constexpr const char* kRgba[] = {"R", "G", "B", "A"};
+constexpr const char* rgbaChannels[] = {"R", "G", "B", "A"};
 
 void checkChannel(const Imf::Channel& channel, const char* channelName, const std::string& name) {
   if (channel.type == Imf::UINT)
@@ -107,7 +107,7 @@ Image readPixels(Imf::InputFile& file, const std::string& name) {
   if (grey) {
     insert("Y", 0);
   } else {
-    for (int c = 0; c < 3; ++c) insert(kRgba[c], c);
+    for (int c = 0; c < 3; ++c) insert(rgbaChannels[c], c);
   }
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
@@ -142,9 +142,9 @@ std::string encodeExr(const Image& image, const std::string& name) {
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
   for (int c = 0; c < 4; ++c) {
-    header.channels().insert(kRgba[c], Imf::Channel(Imf::FLOAT));
-    frame.insert(kRgba[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(linear.data() + c),
-                                      4 * sizeof(float), 4 * sizeof(float) * image.width));
+    header.channels().insert(rgbaChannels[c], Imf::Channel(Imf::FLOAT));
+    frame.insert(rgbaChannels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(linear.data() + c),
+                                             4 * sizeof(float), 4 * sizeof(float) * image.width));
   }
   try {
     MemoryOutput stream(name);

@@ -12,8 +12,8 @@
 namespace oitlab {
 namespace {
 
-constexpr std::int64_t kMaxSide = 32768;
-constexpr std::int64_t kMaxPixels = std::int64_t(1) << 27;
+constexpr std::int64_t maxSide = 32768;
+constexpr std::int64_t maxPixels = std::int64_t(1) << 27;
 
 enum class Format { png, exr };
 
@@ -29,10 +29,10 @@ Format formatOf(const std::filesystem::path& path) {
 }  // namespace
 
 void checkImageSize(std::int64_t width, std::int64_t height, const std::string& name) {
-  const bool sidesFit = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
-  if (sidesFit && width * height <= kMaxPixels) return;
+  const bool sidesFit = width >= 1 && height >= 1 && width <= maxSide && height <= maxSide;
+  if (sidesFit && width * height <= maxPixels) return;
   fail<InputError>("{}: image of {} x {} pixels, wanted 1 to {} on a side and at most {} in all",
-                   name, width, height, kMaxSide, kMaxPixels);
+                   name, width, height, maxSide, maxPixels);
 }
 
 void checkImagePath(const std::filesystem::path& path) {

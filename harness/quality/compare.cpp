@@ -12,7 +12,7 @@ namespace {
 
 /// One step of an 8-bit image. As floats, two neighbouring steps may be up to 6e-8 farther apart.
 /// Without the margin it would depend on the step whether one step counts as more than one.
-constexpr double kStep = 1.0 / 255.0 + 1e-6;
+constexpr double oneStep = 1.0 / 255.0 + 1e-6;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Comparison compareImages(const Image& image, const Image& reference) {
     for (const double error : channels) squares += error * error;
     const double largest = *std::max_element(channels.begin(), channels.end());
     result.maxError = std::max(result.maxError, largest);
-    if (largest > kStep) ++result.pixelsOffCount;
+    if (largest > oneStep) ++result.pixelsOffCount;
   }
   const double mse = pixels == 0 ? 0 : squares / double(3 * pixels);
   result.rmse = std::sqrt(mse);
@@ -36,7 +36,7 @@ Comparison compareImages(const Image& image, const Image& reference) {
   const bool linear = !image.srgb && !reference.srgb;
   if (result.maxError == 0 && image.srgb == reference.srgb) {
     // Exact methods give equal images in many cells; these need no filters.
-    if (std::min(image.width, image.height) >= kMinSsimSide) result.ssim = 1;
+    if (std::min(image.width, image.height) >= minSsimSide) result.ssim = 1;
     result.flip = 0;
     if (linear) result.flipHdr = 0;
     return result;

@@ -21,19 +21,19 @@ namespace {
 
 using Color = std::array<float, 3>;
 
-constexpr std::pair<const char*, MapMetric> kMetrics[] = {{"abs", MapMetric::absolute},
-                                                          {"flip", MapMetric::flip},
-                                                          {"flip_hdr", MapMetric::flipHdr},
-                                                          {"ssim", MapMetric::ssim}};
+constexpr std::pair<const char*, MapMetric> metrics[] = {{"abs", MapMetric::absolute},
+                                                         {"flip", MapMetric::flip},
+                                                         {"flip_hdr", MapMetric::flipHdr},
+                                                         {"ssim", MapMetric::ssim}};
 
 /// Not in the colour map: a value that is not finite must not look like a large error.
-constexpr Color kNotFinite = {0, 1, 0};
+constexpr Color notFinite = {0, 1, 0};
 /// The frame of the legend must not look like an error of 0.
-constexpr Color kPaper = {0.2F, 0.2F, 0.2F};
-constexpr Color kInk = {1, 1, 1};
+constexpr Color paper = {0.2F, 0.2F, 0.2F};
+constexpr Color ink = {1, 1, 1};
 
 /// Narrower maps are padded, because the legend needs room for its numbers.
-constexpr int kMinWidth = 64;
+constexpr int minWidth = 64;
 
 void setPixel(Image& map, int x, int y, const Color& color) {
   std::copy(color.begin(), color.end(), map.at(x, y));
@@ -43,7 +43,7 @@ Image makePaper(int width, int height) {
   Image map{width, height, /*srgb=*/true,
             std::vector<float>(std::size_t(width) * std::size_t(height) * 4, 1.0F)};
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) setPixel(map, x, y, kPaper);
+    for (int x = 0; x < width; ++x) setPixel(map, x, y, paper);
   return map;
 }
 
@@ -52,8 +52,8 @@ void drawLegend(Image& map, int top, int unit, const std::string& label) {
   const int y = top + 2 * unit;
   const int height = tinyTextHeight(unit);
   const int labelX = map.width - 2 * unit - tinyTextWidth(label, unit);
-  drawTinyText(map, 2 * unit, y, unit, "0", kInk);
-  drawTinyText(map, labelX, y, unit, label, kInk);
+  drawTinyText(map, 2 * unit, y, unit, "0", ink);
+  drawTinyText(map, labelX, y, unit, label, ink);
   const int left = 2 * unit + tinyTextWidth("0", unit) + 2 * unit;
   const int right = labelX - 2 * unit;
   for (int x = left; x < right; ++x)
@@ -64,9 +64,9 @@ void drawLegend(Image& map, int top, int unit, const std::string& label) {
 }  // namespace
 
 MapMetric parseMapMetric(const std::string& name) {
-  const auto found = std::find_if(std::begin(kMetrics), std::end(kMetrics),
+  const auto found = std::find_if(std::begin(metrics), std::end(metrics),
                                   [&](const auto& metric) { return metric.first == name; });
-  if (found == std::end(kMetrics))
+  if (found == std::end(metrics))
     fail<InputError>("no error map is called '{}'{}, wanted one of {}", name,
                      didYouMean(name, mapMetricNames()), joinNames(mapMetricNames()));
   return found->second;
@@ -74,7 +74,7 @@ MapMetric parseMapMetric(const std::string& name) {
 
 std::vector<std::string> mapMetricNames() {
   std::vector<std::string> names;
-  for (const auto& [name, metric] : kMetrics) names.emplace_back(name);
+  for (const auto& [name, metric] : metrics) names.emplace_back(name);
   return names;
 }
 
@@ -104,11 +104,11 @@ Image drawMap(const Plane<float>& values, float scale) {
   const int unit = std::clamp(values.width / 320, 1, 6);
   const int legendHeight = tinyTextHeight(unit) + 4 * unit;
 
-  Image map = makePaper(std::max(values.width, kMinWidth), values.height + legendHeight);
+  Image map = makePaper(std::max(values.width, minWidth), values.height + legendHeight);
   for (int y = 0; y < values.height; ++y)
     for (int x = 0; x < values.width; ++x) {
       const float value = values.row(y)[x];
-      setPixel(map, x, y, std::isfinite(value) ? infernoColor(double(value) / scale) : kNotFinite);
+      setPixel(map, x, y, std::isfinite(value) ? infernoColor(double(value) / scale) : notFinite);
     }
   drawLegend(map, values.height, unit, fmt::format("{:.3g}", scale));
   return map;

@@ -48,10 +48,10 @@ Flip withMean(Plane<float> map) {
 
 /// The ACES tone curve as a rational function, (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5): that of
 /// Narkowicz 2015, with the usual exposure factor of 0.6 included.
-constexpr double kAces[6] = {2.51 * 0.36, 0.03 * 0.6, 0, 2.43 * 0.36, 0.59 * 0.6, 0.14};
+constexpr double aces[6] = {2.51 * 0.36, 0.03 * 0.6, 0, 2.43 * 0.36, 0.59 * 0.6, 0.14};
 
 float toneMap(float x) {
-  constexpr auto k = [](int i) { return float(kAces[i]); };
+  constexpr auto k = [](int i) { return float(aces[i]); };
   // From here on the curve is constant to float precision, and larger squares would overflow.
   const float v = std::min(x, 1e9F);
   const float mapped = (k(0) * v * v + k(1) * v + k(2)) / (k(3) * v * v + k(4) * v + k(5));
@@ -60,9 +60,9 @@ float toneMap(float x) {
 
 /// The inverse of the tone curve: the value that becomes `t`.
 double inverseToneMap(double t) {
-  const double a = kAces[0] - t * kAces[3];
-  const double b = kAces[1] - t * kAces[4];
-  const double c = kAces[2] - t * kAces[5];
+  const double a = aces[0] - t * aces[3];
+  const double b = aces[1] - t * aces[4];
+  const double c = aces[2] - t * aces[5];
   const double half = -0.5 * b / a;
   return half + std::sqrt(half * half - c / a);
 }

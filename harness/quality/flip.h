@@ -7,7 +7,7 @@ namespace oitlab {
 
 /// Pixels per degree of visual angle of the observer in the FLIP papers: a 4K display that is 0.7 m
 /// wide, seen from 0.7 m (Andersson et al. 2020, section 6).
-inline constexpr double kFlipPixelsPerDegree = 3840 * 3.14159265358979323846 / 180;
+inline constexpr double flipPixelsPerDegree = 3840 * 3.14159265358979323846 / 180;
 
 /// The result of FLIP: a value in [0, 1] per pixel, which is 0 where an observer who flips between
 /// the two images sees no difference, and its mean. Filters repeat the edge of an image beyond it.
@@ -20,7 +20,7 @@ struct Flip {
 /// 2020). Linear images are clamped to [0, 1]. Symmetric. NaN and infinity count as 0; the caller
 /// has to check for them. `pixelsPerDegree` > 0. Sizes must be equal (checked).
 Flip computeFlip(const Image& image, const Image& reference,
-                 double pixelsPerDegree = kFlipPixelsPerDegree);
+                 double pixelsPerDegree = flipPixelsPerDegree);
 
 /// The exposures of HDR-FLIP, in stops.
 struct ExposureRange {
@@ -38,6 +38,6 @@ ExposureRange flipExposures(const Image& reference);
 /// the largest FLIP over a range of exposures, tone mapped with ACES. It is not symmetric, because
 /// the range is that of the reference. Negative values count as 0; the rest is as in computeFlip().
 Flip computeHdrFlip(const Image& image, const Image& reference,
-                    double pixelsPerDegree = kFlipPixelsPerDegree);
+                    double pixelsPerDegree = flipPixelsPerDegree);
 
 }  // namespace oitlab

@@ -57,8 +57,8 @@ constexpr Matrix makeRgbToWhiteXyz() {
   return m;
 }
 
-constexpr Matrix kRgbToXyz = makeRgbToWhiteXyz();
-constexpr Matrix kXyzToRgb = inverse(kRgbToXyz);
+constexpr Matrix rgbToXyz = makeRgbToWhiteXyz();
+constexpr Matrix xyzToRgb = inverse(rgbToXyz);
 
 Color3 transform(const Matrix& m, const Color3& v) {
   Color3 result{};
@@ -78,14 +78,14 @@ float labCurve(float t) {
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
-constexpr Sensitivity kAchromatic{1.0, 0.0047, 0.0, 1.0};
-constexpr Sensitivity kRedGreen{1.0, 0.0053, 0.0, 1.0};
-constexpr Sensitivity kBlueYellow{34.1, 0.04, 13.5, 0.025};
+constexpr Sensitivity achromatic{1.0, 0.0047, 0.0, 1.0};
+constexpr Sensitivity redGreen{1.0, 0.0053, 0.0, 1.0};
+constexpr Sensitivity blueYellow{34.1, 0.04, 13.5, 0.025};
 
 /// The radius in pixels: three standard deviations of the widest Gaussian, for all channels
 /// (section 4.1.1).
 int filterRadius(double pixelsPerDegree) {
-  return int(std::ceil(3 * std::sqrt(kBlueYellow.b1 / (2 * std::numbers::pi * std::numbers::pi)) *
+  return int(std::ceil(3 * std::sqrt(blueYellow.b1 / (2 * std::numbers::pi * std::numbers::pi)) *
                        pixelsPerDegree));
 }
 
@@ -144,21 +144,21 @@ void changeColors(Planes<float>& planes, Change&& change) {
 }  // namespace
 
 float luminance(const Color3& rgb) {
-  return transform(kRgbToXyz, rgb)[1];
+  return transform(rgbToXyz, rgb)[1];
 }
 
 Color3 toYCxCz(const Color3& rgb) {
-  const auto [x, y, z] = transform(kRgbToXyz, rgb);
+  const auto [x, y, z] = transform(rgbToXyz, rgb);
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
 Color3 fromYCxCz(const Color3& yCxCz) {
   const float y = (yCxCz[0] + 16) / 116;
-  return transform(kXyzToRgb, {y + yCxCz[1] / 500, y, y - yCxCz[2] / 200});
+  return transform(xyzToRgb, {y + yCxCz[1] / 500, y, y - yCxCz[2] / 200});
 }
 
 Color3 toHuntLab(const Color3& rgb) {
-  const Color3 xyz = transform(kRgbToXyz, rgb);
+  const Color3 xyz = transform(rgbToXyz, rgb);
   const float x = labCurve(xyz[0]), y = labCurve(xyz[1]), z = labCurve(xyz[2]);
   const float lightness = 116 * y - 16;
   return {lightness, 0.01F * lightness * 500 * (x - y), 0.01F * lightness * 200 * (y - z)};
@@ -172,7 +172,7 @@ float hyAb(const Color3& a, const Color3& b) {
 Planes<float> perceivedColors(const Planes<float>& rgb, double pixelsPerDegree) {
   Planes<float> planes = rgb;
   changeColors(planes, toYCxCz);
-  constexpr const Sensitivity* sensitivities[] = {&kAchromatic, &kRedGreen, &kBlueYellow};
+  constexpr const Sensitivity* sensitivities[] = {&achromatic, &redGreen, &blueYellow};
   for (std::size_t c = 0; c < 3; ++c)
     planes[c] = filterBy(*sensitivities[c], planes[c], pixelsPerDegree);
   changeColors(planes, [](const Color3& filtered) {

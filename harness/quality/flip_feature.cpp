@@ -8,7 +8,7 @@ namespace oitlab {
 namespace {
 
 /// Width in degrees of the detectors of the human eye (Andersson et al. 2020, section 4.2.1).
-constexpr double kDetectorWidth = 0.082;
+constexpr double detectorWidth = 0.082;
 
 struct Kernels {
   std::vector<float> smooth, edge, point;
@@ -24,7 +24,7 @@ std::vector<float> balance(const std::vector<double>& taps) {
 }
 
 Kernels makeKernels(double pixelsPerDegree) {
-  const double sigma = 0.5 * kDetectorWidth * pixelsPerDegree;
+  const double sigma = 0.5 * detectorWidth * pixelsPerDegree;
   const int radius = int(std::ceil(3 * sigma));
   std::vector<double> smooth, edge, point;
   double sum = 0;

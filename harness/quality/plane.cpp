@@ -10,20 +10,20 @@ namespace {
 
 /// The number of pixels whose sums are in registers. It is constant, so that -O2 vectorizes the
 /// loop.
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t block = 16;
 
 /// to[x] = the sum over k of kernel[k] * source(k)[x] for x in [0, width).
 template <typename T, typename Source>
 void weightedSum(T* to, std::size_t width, std::span<const T> kernel, Source&& source) {
   std::size_t x = 0;
-  for (; x + kBlock <= width; x += kBlock) {
-    T sums[kBlock] = {};
+  for (; x + block <= width; x += block) {
+    T sums[block] = {};
     for (std::size_t k = 0; k < kernel.size(); ++k) {
       const T weight = kernel[k];
       const T* from = source(k) + x;
-      for (std::size_t i = 0; i < kBlock; ++i) sums[i] += weight * from[i];
+      for (std::size_t i = 0; i < block; ++i) sums[i] += weight * from[i];
     }
-    std::copy_n(sums, kBlock, to + x);
+    std::copy_n(sums, block, to + x);
   }
   for (; x < width; ++x) {
     T sum = 0;

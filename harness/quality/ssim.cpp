@@ -9,16 +9,16 @@ namespace oitlab {
 namespace {
 
 // Wang et al. 2004, section III.B and C. The window there is 11 x 11.
-constexpr int kRadius = (kMinSsimSide - 1) / 2;
-constexpr double kSigma = 1.5;
-constexpr double kC1 = 0.01 * 0.01;  // (K1 L)^2, eq. 7, with L = 1
-constexpr double kC2 = 0.03 * 0.03;  // (K2 L)^2, eq. 9
+constexpr int radius = (minSsimSide - 1) / 2;
+constexpr double sigma = 1.5;
+constexpr double c1 = 0.01 * 0.01;  // (K1 L)^2, eq. 7, with L = 1
+constexpr double c2 = 0.03 * 0.03;  // (K2 L)^2, eq. 9
 
-std::array<double, 2 * kRadius + 1> makeWindow() {
-  std::array<double, 2 * kRadius + 1> window{};
+std::array<double, 2 * radius + 1> makeWindow() {
+  std::array<double, 2 * radius + 1> window{};
   double sum = 0;
-  for (int i = -kRadius; i <= kRadius; ++i)
-    sum += window[std::size_t(i + kRadius)] = std::exp(-0.5 * i * i / (kSigma * kSigma));
+  for (int i = -radius; i <= radius; ++i)
+    sum += window[std::size_t(i + radius)] = std::exp(-0.5 * i * i / (sigma * sigma));
   for (double& weight : window) weight /= sum;
   return window;
 }
@@ -43,8 +43,8 @@ void addChannel(Plane<double>& map, const Plane<double>& a, const Plane<double>&
     const double varianceB = squareB.values[i] - mb * mb;
     const double covariance = mixed.values[i] - ma * mb;
     // Eq. 13.
-    const double similarity = ((2 * ma * mb + kC1) * (2 * covariance + kC2)) /
-                              ((ma * ma + mb * mb + kC1) * (varianceA + varianceB + kC2));
+    const double similarity = ((2 * ma * mb + c1) * (2 * covariance + c2)) /
+                              ((ma * ma + mb * mb + c1) * (varianceA + varianceB + c2));
     map.values[i] += similarity / 3;
   });
 }
@@ -59,11 +59,11 @@ Ssim computeSsim(const Image& image, const Image& reference) {
   result.map = Plane<double>(image.width, image.height);
   for (std::size_t c = 0; c < 3; ++c) addChannel(result.map, a[c], b[c]);
 
-  const int insideWidth = image.width - 2 * kRadius, insideHeight = image.height - 2 * kRadius;
+  const int insideWidth = image.width - 2 * radius, insideHeight = image.height - 2 * radius;
   if (insideWidth < 1 || insideHeight < 1) return result;
   double sum = 0;
-  for (int y = kRadius; y < image.height - kRadius; ++y)
-    for (int x = kRadius; x < image.width - kRadius; ++x) sum += result.map.row(y)[x];
+  for (int y = radius; y < image.height - radius; ++y)
+    for (int x = radius; x < image.width - radius; ++x) sum += result.map.row(y)[x];
   result.mean = sum / (double(insideWidth) * double(insideHeight));
   return result;
 }

@@ -8,7 +8,7 @@
 namespace oitlab {
 
 /// In smaller images no pixel has its whole window inside the image.
-inline constexpr int kMinSsimSide = 11;
+inline constexpr int minSsimSide = 11;
 
 /// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of display values: Gaussian window
 /// of sigma 1.5 cut at radius 5, K1 = 0.01, K2 = 0.03, range 1, population covariances. The same
@@ -19,7 +19,7 @@ struct Ssim {
   /// For each pixel the mean over R, G and B, in [-1, 1]; 1 where the windows are equal. Within 5
   /// pixels of an edge the window contains repeated values of the edge.
   Plane<double> map;
-  /// Empty when a side has fewer than kMinSsimSide pixels.
+  /// Empty when a side has fewer than minSsimSide pixels.
   std::optional<double> mean;
 };
 

@@ -5,14 +5,14 @@
 namespace oitlab {
 namespace {
 
-constexpr int kColumns = 3;
-constexpr int kRows = 5;
+constexpr int glyphColumns = 3;
+constexpr int glyphRows = 5;
 
 /// Five octal digits, one per row from the top. The bits of a digit are the columns.
 int glyphOf(char c) {
-  constexpr int kDigits[10] = {075557, 026227, 071747, 071317, 055711,
-                               074717, 074757, 071244, 075757, 075717};
-  if (c >= '0' && c <= '9') return kDigits[c - '0'];
+  constexpr int digitBits[10] = {075557, 026227, 071747, 071317, 055711,
+                                 074717, 074757, 071244, 075757, 075717};
+  if (c >= '0' && c <= '9') return digitBits[c - '0'];
   switch (c) {
     case '.':
       return 000002;
@@ -36,23 +36,23 @@ void fillCell(Image& image, int x, int y, int size, const std::array<float, 3>& 
 }  // namespace
 
 int tinyTextWidth(std::string_view text, int scale) {
-  return text.empty() ? 0 : (int(text.size()) * (kColumns + 1) - 1) * scale;
+  return text.empty() ? 0 : (int(text.size()) * (glyphColumns + 1) - 1) * scale;
 }
 
 int tinyTextHeight(int scale) {
-  return kRows * scale;
+  return glyphRows * scale;
 }
 
 void drawTinyText(Image& image, int x, int y, int scale, std::string_view text,
                   const std::array<float, 3>& color) {
   for (const char c : text) {
     const int glyph = glyphOf(c);
-    for (int row = 0; row < kRows; ++row)
-      for (int column = 0; column < kColumns; ++column) {
-        const int bit = (kRows - 1 - row) * kColumns + (kColumns - 1 - column);
+    for (int row = 0; row < glyphRows; ++row)
+      for (int column = 0; column < glyphColumns; ++column) {
+        const int bit = (glyphRows - 1 - row) * glyphColumns + (glyphColumns - 1 - column);
         if (glyph >> bit & 1) fillCell(image, x + column * scale, y + row * scale, scale, color);
       }
-    x += (kColumns + 1) * scale;
+    x += (glyphColumns + 1) * scale;
   }
 }
 

@@ -18,20 +18,20 @@ namespace {
 
 // Six levels reduce a texture of 1024 texels to 32. Each further level doubles the width of the
 // borders, which at six levels are an eighth of that texture's side.
-constexpr int kLevels = 6;
+constexpr int levelCount = 6;
 
 // One texel at the last level: bilinear filtering needs it.
-constexpr int kBorder = 1 << (kLevels - 1);
+constexpr int border = 1 << (levelCount - 1);
 
 // Cells start and end at multiples of this, so that each 4x4 block of the last level belongs to one
 // cell.
-constexpr int kCell = 4 << (kLevels - 1);
+constexpr int cellSize = 4 << (levelCount - 1);
 
 struct Placed {
   int texture = 0;  // index into Scene::textures
   int halvings = 0;
   int width = 0, height = 0;  // texels, after halving
-  int cellX = 0, cellY = 0;   // in units of kCell
+  int cellX = 0, cellY = 0;   // in units of cellSize
   int cellColumns = 0, cellRows = 0;
 
   void halve() {
@@ -42,7 +42,7 @@ struct Placed {
 };
 
 int cellsFor(int texels) {
-  return (texels + 2 * kBorder + kCell - 1) / kCell;
+  return (texels + 2 * border + cellSize - 1) / cellSize;
 }
 
 // Packs into a square of `side` cells. Returns the height used, or 0 when they do not fit.
@@ -79,7 +79,7 @@ std::pair<int, int> place(std::vector<Placed>& textures, int maxCells) {
     const int largest = size(*std::ranges::max_element(textures, {}, size));
     if (largest == 1)
       fail<InputError>("the scene's {} textures do not fit into an atlas of {} x {} texels",
-                       textures.size(), maxCells * kCell, maxCells * kCell);
+                       textures.size(), maxCells * cellSize, maxCells * cellSize);
     for (Placed& t : textures)
       if (size(t) == largest) t.halve();
   }
@@ -104,10 +104,10 @@ void compress(const LinearImage& image, bool alpha, int x, int y, Atlas::Level& 
 void fill(const Texture& texture, const Placed& placed, Atlas& atlas) {
   LinearImage image = linearImage(texture, atlas.alpha);
   for (int i = 0; i < placed.halvings; ++i) image = halved(image);
-  image = repeated(image, kBorder, placed.cellColumns * kCell, placed.cellRows * kCell);
-  for (int i = 0; i < kLevels; ++i) {
+  image = repeated(image, border, placed.cellColumns * cellSize, placed.cellRows * cellSize);
+  for (int i = 0; i < levelCount; ++i) {
     if (i > 0) image = halved(image);
-    const int cellBlocks = (kCell / 4) >> i;
+    const int cellBlocks = (cellSize / 4) >> i;
     compress(image, atlas.alpha, placed.cellX * cellBlocks, placed.cellY * cellBlocks,
              atlas.levels[std::size_t(i)]);
   }
@@ -117,10 +117,10 @@ void fill(const Texture& texture, const Placed& placed, Atlas& atlas) {
 Atlas buildAtlas(const Scene& scene, std::vector<Placed>& textures, bool alpha, int maxSide) {
   Atlas atlas{.alpha = alpha};
   if (textures.empty()) return atlas;
-  const auto [columns, rows] = place(textures, maxSide / kCell);
-  atlas.width = columns * kCell;
-  atlas.height = rows * kCell;
-  for (int i = 0; i < kLevels; ++i) {
+  const auto [columns, rows] = place(textures, maxSide / cellSize);
+  atlas.width = columns * cellSize;
+  atlas.height = rows * cellSize;
+  for (int i = 0; i < levelCount; ++i) {
     Atlas::Level& level = atlas.levels.emplace_back();
     level.width = atlas.width >> i;
     level.height = atlas.height >> i;
@@ -136,7 +136,7 @@ Atlas buildAtlas(const Scene& scene, std::vector<Placed>& textures, bool alpha, 
 }  // namespace
 
 SceneAtlases buildAtlases(const Scene& scene, int maxSide) {
-  OITLAB_CHECK_OP(maxSide % kCell, ==, 0);
+  OITLAB_CHECK_OP(maxSide % cellSize, ==, 0);
   OITLAB_CHECK_OP(maxSide, >, 0);
   std::vector<bool> hasAlpha;
   for (const Texture& texture : scene.textures) hasAlpha.push_back(texture.hasAlpha());
@@ -166,7 +166,7 @@ SceneAtlases buildAtlases(const Scene& scene, int maxSide) {
       const Placed& t = textures[std::size_t(slot[std::size_t(material.texture)])];
       const glm::vec2 size(atlas.width, atlas.height);
       const glm::vec2 offset =
-          glm::vec2(t.cellX * kCell + kBorder, t.cellY * kCell + kBorder) / size;
+          glm::vec2(t.cellX * cellSize + border, t.cellY * cellSize + border) / size;
       result.ofMaterial[i] = {alpha ? 2u : 1u,
                               glm::vec4(offset, glm::vec2(t.width, t.height) / size)};
     }

@@ -18,11 +18,11 @@ namespace {
 // close because reversed float depth has the same relative precision wherever the near plane is. It
 // must be this close because in an interior view objects are near the eye. A triangle clipped there
 // would be missing from the image of every method, and nobody would notice.
-constexpr float kNearShare = 0.001f;
+constexpr float nearShare = 0.001f;
 
-constexpr float kDefaultFov = 60.0f;
+constexpr float defaultFov = 60.0f;
 
-constexpr const char* kForms =
+constexpr const char* forms =
     "'orbit:YAW,PITCH,DISTANCE[,FOV]' (radians, FOV in degrees) or "
     "'look:EX,EY,EZ,TX,TY,TZ[,FOV]'";
 
@@ -108,7 +108,7 @@ Camera orbitCamera(glm::vec3 center, float distance, float yaw, float pitch, flo
           .target = center,
           .up = up,
           .fovY = fovY,
-          .near = kNearShare * distance};
+          .near = nearShare * distance};
 }
 
 Camera overviewCamera(const Bounds& bounds) {
@@ -116,7 +116,7 @@ Camera overviewCamera(const Bounds& bounds) {
   return {.eye = bounds.center() + 2.0f * radius * glm::normalize(glm::vec3(0.7f, 0.4f, 1.0f)),
           .target = bounds.center(),
           .fovY = degreesToRadians(50.0f),
-          .near = kNearShare * radius};
+          .near = nearShare * radius};
 }
 
 Camera parseCamera(const std::string& text, const Bounds& bounds) {
@@ -128,8 +128,8 @@ Camera parseCamera(const std::string& text, const Bounds& bounds) {
   std::size_t count = 0;
   if ((!orbit && !look) || !parseNumbers(view.substr(orbit ? 6 : 5), n, count) ||
       (count != wanted && count != wanted + 1))
-    fail<InputError>("view '{}': expected {}", text, kForms);
-  const float fov = parseFov(text, count > wanted ? n[wanted] : kDefaultFov);
+    fail<InputError>("view '{}': expected {}", text, forms);
+  const float fov = parseFov(text, count > wanted ? n[wanted] : defaultFov);
 
   if (orbit) {
     if (!(n[2] > 0.0f))
@@ -139,7 +139,7 @@ Camera parseCamera(const std::string& text, const Bounds& bounds) {
   const Camera camera{.eye = {n[0], n[1], n[2]},
                       .target = {n[3], n[4], n[5]},
                       .fovY = fov,
-                      .near = kNearShare * radiusOf(bounds)};
+                      .near = nearShare * radiusOf(bounds)};
   if (camera.eye == camera.target)
     fail<InputError>("view '{}': eye and target are the same point", text);
   return camera;

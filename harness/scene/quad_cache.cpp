@@ -14,11 +14,11 @@ namespace oitlab {
 namespace {
 
 // Change it with the algorithm, the order of the quads or the layout of the content.
-constexpr int kVersion = 2;
+constexpr int version = 2;
 
 // The content of the file: the number of degenerate quads, the quads, the ids of their triangles.
-constexpr std::size_t kHeadBytes = sizeof(std::uint32_t);
-constexpr std::size_t kBytesPerQuad = sizeof(glm::uvec4) + sizeof(glm::uvec2);
+constexpr std::size_t headBytes = sizeof(std::uint32_t);
+constexpr std::size_t bytesPerQuad = sizeof(glm::uvec4) + sizeof(glm::uvec2);
 
 std::string hashOf(const Scene& scene) {
   const std::string parts = imageHash(std::as_bytes(std::span(scene.triangles))) +
@@ -28,10 +28,10 @@ std::string hashOf(const Scene& scene) {
 
 std::string toBytes(const QuadMesh& mesh) {
   const std::size_t quadBytes = mesh.quads.size() * sizeof(glm::uvec4);
-  std::string bytes(kHeadBytes + mesh.quads.size() * kBytesPerQuad, '\0');
-  std::memcpy(bytes.data(), &mesh.degenerate, kHeadBytes);
+  std::string bytes(headBytes + mesh.quads.size() * bytesPerQuad, '\0');
+  std::memcpy(bytes.data(), &mesh.degenerate, headBytes);
   if (mesh.quads.empty()) return bytes;
-  char* const quads = bytes.data() + kHeadBytes;
+  char* const quads = bytes.data() + headBytes;
   std::memcpy(quads, mesh.quads.data(), quadBytes);
   std::memcpy(quads + quadBytes, mesh.triangles.data(), mesh.quads.size() * sizeof(glm::uvec2));
   return bytes;
@@ -39,15 +39,15 @@ std::string toBytes(const QuadMesh& mesh) {
 
 /// Empty when the size is not that of a mesh.
 std::optional<QuadMesh> fromBytes(std::string_view bytes) {
-  if (bytes.size() < kHeadBytes || (bytes.size() - kHeadBytes) % kBytesPerQuad != 0)
+  if (bytes.size() < headBytes || (bytes.size() - headBytes) % bytesPerQuad != 0)
     return std::nullopt;
-  const std::size_t quads = (bytes.size() - kHeadBytes) / kBytesPerQuad;
+  const std::size_t quads = (bytes.size() - headBytes) / bytesPerQuad;
   QuadMesh mesh;
   mesh.quads.resize(quads);
   mesh.triangles.resize(quads);
-  std::memcpy(&mesh.degenerate, bytes.data(), kHeadBytes);
+  std::memcpy(&mesh.degenerate, bytes.data(), headBytes);
   if (quads == 0) return mesh;
-  const char* from = bytes.data() + kHeadBytes;
+  const char* from = bytes.data() + headBytes;
   std::memcpy(mesh.quads.data(), from, quads * sizeof(glm::uvec4));
   std::memcpy(mesh.triangles.data(), from + quads * sizeof(glm::uvec4), quads * sizeof(glm::uvec2));
   return mesh;
@@ -57,7 +57,7 @@ std::optional<QuadMesh> fromBytes(std::string_view bytes) {
 
 QuadMesh cachedQuads(const Scene& scene, const std::filesystem::path& folder) {
   const std::string hash = hashOf(scene);
-  const std::string key = fmt::format("quads {} {}", kVersion, hash);
+  const std::string key = fmt::format("quads {} {}", version, hash);
   const std::filesystem::path path = folder / (hash + ".bin");
   if (const auto bytes = readCached(path, key))
     if (auto mesh = fromBytes(*bytes)) return *std::move(mesh);

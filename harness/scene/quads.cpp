@@ -17,9 +17,9 @@ namespace {
 // of opposite half-edges, and each half-edge is part of at most one candidate. Therefore a triangle
 // has at most three candidates, a candidate conflicts with at most four others, and the time below
 // is linear.
-constexpr std::uint32_t kNone = ~0u;
-constexpr std::uint32_t kUpwards = 1u << 31;  // flag of a half-edge: it goes to the higher vertex
-constexpr std::uint32_t kMaxTriangles = (kUpwards - 1) / 3;
+constexpr std::uint32_t none = ~0u;
+constexpr std::uint32_t upwards = 1u << 31;  // flag of a half-edge: it goes to the higher vertex
+constexpr std::uint32_t maxTriangles = (upwards - 1) / 3;
 
 std::uint32_t triangleOf(std::uint32_t halfEdge) {
   return halfEdge / 3;
@@ -32,14 +32,14 @@ std::uint32_t nextCorner(std::uint32_t corner) {
 /// index buffer and duplicated vertices still give quads.
 std::vector<std::uint32_t> weld(const std::vector<Vertex>& vertices) {
   // A hash table with open addressing, at most two thirds full.
-  std::vector<std::uint32_t> table(std::bit_ceil(vertices.size() * 3 / 2 + 1), kNone);
+  std::vector<std::uint32_t> table(std::bit_ceil(vertices.size() * 3 / 2 + 1), none);
   std::vector<std::uint32_t> first(vertices.size());
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
     std::size_t slot = XXH3_64bits(&vertices[i], sizeof(Vertex)) & (table.size() - 1);
-    while (table[slot] != kNone &&
+    while (table[slot] != none &&
            std::memcmp(&vertices[table[slot]], &vertices[i], sizeof(Vertex)) != 0)
       slot = (slot + 1) & (table.size() - 1);
-    if (table[slot] == kNone) table[slot] = i;
+    if (table[slot] == none) table[slot] = i;
     first[i] = table[slot];
   }
   return first;
@@ -48,10 +48,10 @@ std::vector<std::uint32_t> weld(const std::vector<Vertex>& vertices) {
 class Pairing {
  public:
   explicit Pairing(const Scene& scene) : triangles_(scene.triangles) {
-    if (triangles_.size() > kMaxTriangles)
+    if (triangles_.size() > maxTriangles)
       fail<InputError>(
           "scene '{}': {} triangles are more than the {} that can be paired into quads", scene.name,
-          triangles_.size(), kMaxTriangles);
+          triangles_.size(), maxTriangles);
     findCandidates(weld(scene.vertices));
     chooseGreedily();
   }
@@ -62,7 +62,7 @@ class Pairing {
     mesh.triangles.reserve(triangles_.size() / 2 + 1);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       const glm::uvec3& mine = triangles_[t];
-      if (chosen_[t] == kNone) {
+      if (chosen_[t] == none) {
         mesh.quads.emplace_back(mine.x, mine.y, mine.z, mine.z);
         mesh.triangles.emplace_back(t, QuadMesh::noTriangle);
         ++mesh.degenerate;
@@ -98,19 +98,19 @@ class Pairing {
     for (std::uint32_t h = 0; h < count; ++h) {
       const auto [from, to] = ends(h);
       if (from == to) continue;
-      const std::uint32_t low = (from < to ? kUpwards : 0u) | h;
+      const std::uint32_t low = (from < to ? upwards : 0u) | h;
       keys[begin[std::min(from, to) + 1]++] = (std::uint64_t(std::max(from, to)) << 32) | low;
     }
 
-    opposite_.assign(count, kNone);
-    const auto halfEdge = [](std::uint64_t key) { return std::uint32_t(key) & ~kUpwards; };
+    opposite_.assign(count, none);
+    const auto halfEdge = [](std::uint64_t key) { return std::uint32_t(key) & ~upwards; };
     for (std::size_t v = 0; v < welded.size(); ++v) {
       const auto last = keys.begin() + begin[v + 1];
       std::sort(keys.begin() + begin[v], last);
       for (auto edge = keys.begin() + begin[v]; edge != last;) {
         const std::uint64_t top = *edge >> 32;
         const auto up = std::find_if(
-            edge, last, [&](std::uint64_t key) { return key >= ((top << 32) | kUpwards); });
+            edge, last, [&](std::uint64_t key) { return key >= ((top << 32) | upwards); });
         const auto end =
             std::find_if(up, last, [&](std::uint64_t key) { return key >> 32 != top; });
         // Pairs the n-th half-edge of one direction with the n-th of the other. A closed surface
@@ -127,14 +127,14 @@ class Pairing {
     if (t == u) return;
     // Two triangles that share more than one edge are still only one candidate.
     for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i)
-      if (opposite_[i] != kNone && triangleOf(opposite_[i]) == u) return;
+      if (opposite_[i] != none && triangleOf(opposite_[i]) == u) return;
     opposite_[h] = g;
     opposite_[g] = h;
   }
 
   bool isOpen(std::uint32_t h) const {
     const std::uint32_t g = opposite_[h];
-    return g != kNone && chosen_[triangleOf(h)] == kNone && chosen_[triangleOf(g)] == kNone;
+    return g != none && chosen_[triangleOf(h)] == none && chosen_[triangleOf(g)] == none;
   }
 
   /// The number of open candidates that the candidate of half-edge h conflicts with.
@@ -146,13 +146,13 @@ class Pairing {
   /// Each time one does, the candidate is also put into the bucket of its new degree; its old
   /// entries are skipped when they are found.
   void chooseGreedily() {
-    chosen_.assign(triangles_.size(), kNone);
+    chosen_.assign(triangles_.size(), none);
     open_.assign(triangles_.size(), 0);
     for (std::uint32_t h = 0; h < opposite_.size(); ++h)
-      open_[triangleOf(h)] += opposite_[h] != kNone;
+      open_[triangleOf(h)] += opposite_[h] != none;
     // In reverse order, because buckets are emptied from their end: low ids come first.
     for (auto h = std::uint32_t(opposite_.size()); h-- > 0;)
-      if (opposite_[h] != kNone && h < opposite_[h]) buckets_[degree(h)].push_back(h);
+      if (opposite_[h] != none && h < opposite_[h]) buckets_[degree(h)].push_back(h);
     for (std::size_t least = 0; least < buckets_.size();) {
       if (buckets_[least].empty()) {
         ++least;
@@ -189,8 +189,8 @@ class Pairing {
 
   const std::vector<glm::uvec3>& triangles_;
   std::vector<std::uint32_t>
-      opposite_;                       // per half-edge: the opposite one of its candidate, or kNone
-  std::vector<std::uint32_t> chosen_;  // per triangle: its half-edge in the chosen quad, or kNone
+      opposite_;                       // per half-edge: the opposite one of its candidate, or none
+  std::vector<std::uint32_t> chosen_;  // per triangle: its half-edge in the chosen quad, or none
   std::vector<std::uint8_t> open_;     // per triangle: its candidates with free triangles
   std::array<std::vector<std::uint32_t>, 5> buckets_;  // candidates by degree
 };

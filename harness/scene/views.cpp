@@ -8,7 +8,7 @@
 namespace oitlab {
 namespace {
 
-constexpr std::string_view kPaths = "paths";
+constexpr std::string_view pathsTable = "paths";
 
 std::string placeOf(const std::filesystem::path& file, const toml::node& node) {
   return fmt::format("{}:{}", file.string(), node.source().begin.line);
@@ -50,7 +50,7 @@ void addPath(Scene& scene, const std::filesystem::path& file, const std::string&
 
 void addPaths(Scene& scene, const std::filesystem::path& file, const toml::node& node) {
   const toml::table* table = node.as_table();
-  if (!table) fail<InputError>("{}: '{}' is not a table of paths", placeOf(file, node), kPaths);
+  if (!table) fail<InputError>("{}: '{}' is not a table of paths", placeOf(file, node), pathsTable);
   for (const auto& [name, path] : *table) addPath(scene, file, std::string(name.str()), path);
 }
 
@@ -61,7 +61,7 @@ void addViews(Scene& scene, const std::filesystem::path& file, const toml::node*
   if (!table)
     fail<InputError>("{}: '{}' is not a table of views", placeOf(file, *found), tableName);
   for (const auto& [name, node] : *table) {
-    if (name.str() == kPaths) {
+    if (name.str() == pathsTable) {
       addPaths(scene, file, node);
       continue;
     }
@@ -93,7 +93,7 @@ void addNamedViews(Scene& scene, const std::filesystem::path& file) {
   if (file.empty() || !std::filesystem::exists(beside.replace_extension(".toml"), ignored)) return;
   const toml::table document = parseFile(beside);
   addViews(scene, beside, document.get("views"), "views");
-  if (const toml::node* paths = document.get(kPaths)) addPaths(scene, beside, *paths);
+  if (const toml::node* paths = document.get(pathsTable)) addPaths(scene, beside, *paths);
 }
 
 }  // namespace oitlab

@@ -9,8 +9,8 @@ namespace oitlab::cpu_reference {
 namespace {
 
 // With coordinates of up to 53 bits and pixels of up to 15 bits, an edge function is below 2^125.
-constexpr int kPositionBits = 53;
-constexpr int kMaxSide = 1 << 14;
+constexpr int positionBits = 53;
+constexpr int maxSide = 1 << 14;
 
 // A centre exactly on an edge belongs to the triangle if the edge is its left or top edge: the rule
 // of hardware rasterizers. `inside` is 1 or -1, the sign of the edge function inside the triangle.
@@ -24,7 +24,7 @@ bool ownsItsPoints(Int128 a, Int128 b, int inside) {
 
 Projection::Projection(const Scene& scene, const Camera& camera, int width, int height)
     : width_(width), height_(height) {
-  OITLAB_CHECK_OP(std::max(width, height), <=, kMaxSide);
+  OITLAB_CHECK_OP(std::max(width, height), <=, maxSide);
   OITLAB_CHECK_OP(std::min(width, height), >, 0);
   // The float32 matrix that all methods get defines the camera, so its rounding is not an error.
   // Sums of products of two floats lose at most the last bit of a double.
@@ -41,7 +41,7 @@ Projection::Projection(const Scene& scene, const Camera& camera, int width, int 
   }
   int exponent = 0;  // largest < 2^exponent
   std::frexp(largest, &exponent);
-  unit_ = std::ldexp(1.0, exponent - kPositionBits);
+  unit_ = std::ldexp(1.0, exponent - positionBits);
   positions_.reserve(scene.vertices.size());
   for (const Vertex& vertex : scene.vertices) {
     const glm::dvec3 p = transform(vertex) / unit_;

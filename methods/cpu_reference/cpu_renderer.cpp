@@ -16,10 +16,10 @@ namespace {
 // Relative error of a float32 depth: about 60 roundings of 2^-24, from a transform with
 // cancellation near the eye, the division and the interpolation. Where depth is steep, snapped
 // vertices change it more; that is added (Fragment::depthDoubt).
-constexpr double kDepthPrecision = 4e-6;
+constexpr double depthPrecision = 4e-6;
 
 // The largest difference that is ignored: half of the tolerance of 2/255 for methods.
-constexpr double kVisible = 1.0 / 255;
+constexpr double visible = 1.0 / 255;
 
 struct Fragment {
   int x = 0;
@@ -39,7 +39,7 @@ double difference(const glm::dvec4& a, const glm::dvec4& b) {
 
 // Smaller changes of weights change a colour by less than half a step of 1/255: shading is at most
 // twice as steep as the attributes.
-constexpr double kSteep = 0.5 / 255 / 2;
+constexpr double steepWeight = 0.5 / 255 / 2;
 
 class RowRenderer {
  public:
@@ -86,7 +86,7 @@ class RowRenderer {
       const double slope = (std::abs(glm::dot(hit.weightDx, w)) +  // relative, per pixel
                             std::abs(glm::dot(hit.weightDy, w))) /
                            hit.distance;
-      f.depthDoubt = f.depth * (kDepthPrecision + Triangle::edgeDoubt * slope);
+      f.depthDoubt = f.depth * (depthPrecision + Triangle::edgeDoubt * slope);
       f.exists = hit.covered && f.depth <= 1.0;  // there is nothing in front of the near plane
       if (hit.nearEdge || (hit.covered && std::abs(f.depth - 1.0) <= f.depthDoubt))
         f.doubts = doubt::edge;
@@ -106,7 +106,7 @@ class RowRenderer {
     double changed = 0.0;
     for (const glm::dvec3& slope : {hit.weightDx, hit.weightDy}) {
       const glm::dvec3 step = Triangle::edgeDoubt * slope;
-      if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) < kSteep) continue;
+      if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) < steepWeight) continue;
       Hit moved = hit;
       moved.weight += step;
       const glm::dvec4 other = shading_.shade(corners, moved).color;
@@ -127,7 +127,7 @@ class RowRenderer {
     for (const Fragment& f : opaque) {
       if (!mayBeInFrontOf(f, back)) break;
       doubts |= f.doubts;
-      if (f.exists && tooCloseToOrder(f, back) && difference(f.color, back.color) > kVisible)
+      if (f.exists && tooCloseToOrder(f, back) && difference(f.color, back.color) > visible)
         doubts |= doubt::depthOrder;
     }
 
@@ -145,7 +145,7 @@ class RowRenderer {
       const double alpha = f.color.a;
       if (tooCloseToOrder(f, back)) swaps += alpha * difference(f.color, back.color);
       if (f.depth < back.depth) continue;
-      for (std::size_t j = i + 1; j < transparent.size() && swaps <= kVisible; ++j) {
+      for (std::size_t j = i + 1; j < transparent.size() && swaps <= visible; ++j) {
         const Fragment& g = transparent[j];
         if (f.depth - g.depth > f.depthDoubt + largestDoubt) break;
         if (g.exists && tooCloseToOrder(f, g))
@@ -156,7 +156,7 @@ class RowRenderer {
       transmittance *= 1.0 - alpha;
       ++count;
     }
-    if (swaps > kVisible) doubts |= doubt::depthOrder;
+    if (swaps > visible) doubts |= doubt::depthOrder;
     image.color[pixel] = glm::dvec4(color + transmittance * glm::dvec3(back.color), 1.0);
     image.fragments[pixel] = count;
     image.doubts[pixel] = doubts;

@@ -7,13 +7,13 @@ namespace oitlab::cpu_reference {
 namespace {
 
 // As in shade.glsl.
-const glm::dvec3 kToLight(0.3999, 0.8142, 0.4206);
-constexpr double kAmbient = 0.2;
+const glm::dvec3 toLight(0.3999, 0.8142, 0.4206);
+constexpr double ambient = 0.2;
 
 // The error of alpha on a device: BC3 interpolates it in steps of 1/255, and texels are weighted in
 // steps of 1/256 in each direction and between levels. Together these are up to 4/256, and a little
 // for the shader's log2.
-constexpr double kCutoffDoubt = 0.02;
+constexpr double cutoffDoubt = 0.02;
 
 glm::dvec4 unpackColor(std::uint32_t packed) {
   glm::dvec4 color;
@@ -59,12 +59,12 @@ Shaded Shading::shade(const glm::uvec3& triangle, const Hit& hit) const {
     color *= sample(levels_[place.atlas - 1], offset + glm::fract(uv) * extent, uvDx * extent,
                     uvDy * extent);
   }
-  const double wrapped = 0.5 + 0.5 * glm::dot(glm::normalize(normal), kToLight);
+  const double wrapped = 0.5 + 0.5 * glm::dot(glm::normalize(normal), toLight);
   Shaded result;
   result.discarded = color.a < double(material.alphaCutoff);
-  result.nearCutoff = material.alphaCutoff > 0.0f &&
-                      std::abs(color.a - double(material.alphaCutoff)) < kCutoffDoubt;
-  result.color = glm::dvec4(glm::dvec3(color) * glm::mix(kAmbient, 1.0, wrapped),
+  result.nearCutoff =
+      material.alphaCutoff > 0.0f && std::abs(color.a - double(material.alphaCutoff)) < cutoffDoubt;
+  result.color = glm::dvec4(glm::dvec3(color) * glm::mix(ambient, 1.0, wrapped),
                             std::clamp(color.a, 0.0, 1.0));
   return result;
 }

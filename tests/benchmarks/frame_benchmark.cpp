@@ -31,10 +31,10 @@ void recordAndSubmit(benchmark::State& state, const char* sceneName, const char*
 
 BENCHMARK_CAPTURE(recordAndSubmit, blend_planes, "planes", "blend")
     ->UseManualTime()
-    ->Unit(benchmark::kMicrosecond);
+    ->Unit(benchmark::microsecond);
 BENCHMARK_CAPTURE(recordAndSubmit, reference_planes, "planes", "reference")
     ->UseManualTime()
-    ->Unit(benchmark::kMicrosecond);
+    ->Unit(benchmark::microsecond);
 
 }  // namespace
 }  // namespace oitlab

@@ -43,12 +43,12 @@ BENCHMARK_CAPTURE(pairQuads, in_order, false)
     ->Arg(100)
     ->Arg(300)
     ->Arg(707)
-    ->Unit(benchmark::kMillisecond);
+    ->Unit(benchmark::millisecond);
 BENCHMARK_CAPTURE(pairQuads, shuffled, true)
     ->Arg(100)
     ->Arg(300)
     ->Arg(707)
-    ->Unit(benchmark::kMillisecond);
+    ->Unit(benchmark::millisecond);
 
 /// Makes generated scenes at full detail, with bounds and views.
 void load(benchmark::State& state, const char* name) {
@@ -64,9 +64,9 @@ void loadFile(benchmark::State& state) {
   load(state, path);
 }
 
-BENCHMARK(loadFile)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(load, boxes, "boxes")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(load, teapot, "teapot")->Unit(benchmark::kMillisecond);
+BENCHMARK(loadFile)->Unit(benchmark::millisecond);
+BENCHMARK_CAPTURE(load, boxes, "boxes")->Unit(benchmark::millisecond);
+BENCHMARK_CAPTURE(load, teapot, "teapot")->Unit(benchmark::millisecond);
 
 /// Builds the atlases of two noise textures with alpha, on all cores.
 void atlas(benchmark::State& state) {
@@ -83,7 +83,7 @@ void atlas(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 2 * state.range(0) * state.range(0));
   state.SetLabel("texels");
 }
-BENCHMARK(atlas)->Arg(128)->Arg(512)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(atlas)->Arg(128)->Arg(512)->UseRealTime()->Unit(benchmark::millisecond);
 
 }  // namespace
 }  // namespace oitlab

@@ -10,8 +10,8 @@
 namespace oitlab {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double quantile(std::vector<double> sorted, double q) {
   return quantileOfSorted(sorted, q);
@@ -39,7 +39,7 @@ TEST(Quantile, IsType7) {
 TEST(QuantileDeathTest, RefusesNonsense) {
   EXPECT_DEATH(quantile({}, 0.5), "check failed");
   EXPECT_DEATH(quantile({1}, 1.5), "check failed");
-  EXPECT_DEATH(quantile({1}, kNan), "check failed");
+  EXPECT_DEATH(quantile({1}, notANumber), "check failed");
 }
 
 TEST(Summarize, ValuesWorkedOutByHand) {
@@ -75,13 +75,13 @@ TEST(Summarize, OneSampleIsItsOwnInterval) {
 }
 
 TEST(Summarize, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
-  const Summary summary = summarizeOne({kNan, 2, kInfinity, 1, 3, -kInfinity});
+  const Summary summary = summarizeOne({notANumber, 2, infinite, 1, 3, -infinite});
   EXPECT_EQ(summary.count, 3U);
   EXPECT_EQ(summary.notFinite, 3U);
   EXPECT_EQ(summary.median, 2);
   EXPECT_EQ(summary.max, 3);
-  EXPECT_EQ(summarizeOne({kNan}).count, 0U);
-  EXPECT_EQ(summarizeOne({kNan}).notFinite, 1U);
+  EXPECT_EQ(summarizeOne({notANumber}).count, 0U);
+  EXPECT_EQ(summarizeOne({notANumber}).notFinite, 1U);
 }
 
 TEST(Summarize, IsDeterministicFromTheSeed) {
@@ -121,10 +121,10 @@ TEST(Summarize, IntervalsCoverTheTruth) {
   // interval that treats frames as independent contains it little more than half of the time.
   std::mt19937_64 random(42);
   std::normal_distribution<double> normal;
-  constexpr int kTrials = 200;
+  constexpr int trials = 200;
   int covered = 0;
   int coveredByFrames = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     std::vector<double> samples;
     std::vector<std::uint32_t> blocks;
     for (std::uint32_t block = 0; block < 20; ++block) {
@@ -140,9 +140,9 @@ TEST(Summarize, IntervalsCoverTheTruth) {
     const Summary byFrames = summarize(samples, oneBlock, 1, 200);
     coveredByFrames += byFrames.ciLow <= 10 && 10 <= byFrames.ciHigh;
   }
-  EXPECT_GE(covered, kTrials * 86 / 100);
-  EXPECT_LE(covered, kTrials * 99 / 100);
-  EXPECT_LE(coveredByFrames, kTrials * 75 / 100);
+  EXPECT_GE(covered, trials * 86 / 100);
+  EXPECT_LE(covered, trials * 99 / 100);
+  EXPECT_LE(coveredByFrames, trials * 75 / 100);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace oitlab {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 StopRule ruleOf(double seconds, const std::vector<double>& medians,
                 StopRule::Limits limits = {.minBlocks = 5}) {
@@ -20,8 +20,8 @@ StopRule ruleOf(double seconds, const std::vector<double>& medians,
 TEST(StopRule, SpreadIsInterquartileRangeOverMedian) {
   // Quartiles 1.75 and 5.5, median 3.
   EXPECT_DOUBLE_EQ(ruleOf(0, {4, 1, 10, 2}).relativeSpread(), 1.25);
-  EXPECT_EQ(ruleOf(0, {}).relativeSpread(), kInfinity);
-  EXPECT_EQ(ruleOf(0, {0, 0}).relativeSpread(), kInfinity);
+  EXPECT_EQ(ruleOf(0, {}).relativeSpread(), infinite);
+  EXPECT_EQ(ruleOf(0, {0, 0}).relativeSpread(), infinite);
 }
 
 TEST(StopRule, StopsAtASmallSpreadButNotEarly) {
@@ -66,11 +66,13 @@ TEST(StopRule, StopsAtTheMostBlocks) {
 }
 
 TEST(StopRule, BlocksWithoutAFrameNeitherPassNorHang) {
-  EXPECT_EQ(ruleOf(0, {kNan, kNan, kNan, kNan, kNan, kNan}).stopReason(), "");
-  EXPECT_EQ(ruleOf(5, {kNan, kNan}).stopReason(), "time_limit");
-  EXPECT_EQ(ruleOf(0, std::vector<double>(200, kNan)).stopReason(), "max_blocks");
-  EXPECT_EQ(ruleOf(0, {10, kNan, 10, 10, 10}).stopReason(), "");
-  EXPECT_EQ(ruleOf(0, {10, kNan, 10, 10, 10, 10}).stopReason(), "spread");
+  EXPECT_EQ(ruleOf(0, {notANumber, notANumber, notANumber, notANumber, notANumber, notANumber})
+                .stopReason(),
+            "");
+  EXPECT_EQ(ruleOf(5, {notANumber, notANumber}).stopReason(), "time_limit");
+  EXPECT_EQ(ruleOf(0, std::vector<double>(200, notANumber)).stopReason(), "max_blocks");
+  EXPECT_EQ(ruleOf(0, {10, notANumber, 10, 10, 10}).stopReason(), "");
+  EXPECT_EQ(ruleOf(0, {10, notANumber, 10, 10, 10, 10}).stopReason(), "spread");
 }
 
 }  // namespace

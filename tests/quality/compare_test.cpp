@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Image makeFlat(int width, int height, float value, bool srgb = false) {
   return {width, height, srgb, std::vector<float>(std::size_t(width) * height * 4, value)};
@@ -26,7 +26,7 @@ Image makeFlat(int width, int height, float value, bool srgb = false) {
 TEST(CompareImages, EqualImages) {
   const Comparison result = compareImages(makeFlat(3, 2, 0.3F), makeFlat(3, 2, 0.3F));
   EXPECT_EQ(result.rmse, 0);
-  EXPECT_EQ(result.psnr, kInfinity);
+  EXPECT_EQ(result.psnr, infinite);
   EXPECT_EQ(result.maxError, 0);
   EXPECT_EQ(result.pixelsOff, 0);
 }
@@ -71,7 +71,7 @@ TEST(CompareImages, OneStepOfEightBitsIsNotOffWhateverTheRounding) {
 }
 
 TEST(CompareImages, NotANumberIsOffByInfinity) {
-  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), float(kInfinity)};
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(), float(infinite)};
   for (const float value : bad) {
     Image broken = makeFlat(2, 1, 0.5F);
     broken.rgba[1] = value;
@@ -80,9 +80,9 @@ TEST(CompareImages, NotANumberIsOffByInfinity) {
     for (const auto& [a, b] :
          {std::pair(broken, whole), std::pair(whole, broken), std::pair(broken, broken)}) {
       const Comparison result = compareImages(a, b);
-      EXPECT_EQ(result.maxError, kInfinity);
-      EXPECT_EQ(result.rmse, kInfinity);
-      EXPECT_EQ(result.psnr, -kInfinity);
+      EXPECT_EQ(result.maxError, infinite);
+      EXPECT_EQ(result.rmse, infinite);
+      EXPECT_EQ(result.psnr, -infinite);
       EXPECT_EQ(result.pixelsOffCount, 1U);
     }
   }
@@ -167,7 +167,7 @@ TEST(ErrorMap, EachMetricIsZeroWhereEqualAndInfinityWhereNotANumber) {
   for (int c = 0; c < 3; ++c) image.at(40, 20)[c] = 0.9F;
   for (const std::string& name : mapMetricNames()) {
     const Plane<float> errors = errorPlane(image, reference, parseMapMetric(name));
-    EXPECT_EQ(errors.row(20)[10], kInfinity) << name;
+    EXPECT_EQ(errors.row(20)[10], infinite) << name;
     EXPECT_EQ(std::count_if(errors.values.begin(), errors.values.end(),
                             [](float error) { return std::isfinite(error); }),
               60 * 40 - 1)

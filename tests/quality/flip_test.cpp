@@ -69,8 +69,8 @@ TEST(FlipFeature, AnEdgeAndAPointAreFoundAndFlatIsNothing) {
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 41; ++x) step.row(y)[x] = x >= 20 ? 1.0F : 0.0F;
   std::fill(flat.values.begin(), flat.values.end(), 0.7F);
-  const Features none = detectFeatures(flat, kFlipPixelsPerDegree);
-  const Features found = detectFeatures(step, kFlipPixelsPerDegree);
+  const Features none = detectFeatures(flat, flipPixelsPerDegree);
+  const Features found = detectFeatures(step, flipPixelsPerDegree);
   EXPECT_NEAR(none.edges.row(20)[20], 0, 1e-6);
   EXPECT_NEAR(none.points.row(20)[20], 0, 1e-6);
   // The half of the kernel over white adds up to 1, and the other half is over black.
@@ -80,7 +80,7 @@ TEST(FlipFeature, AnEdgeAndAPointAreFoundAndFlatIsNothing) {
   Plane<float> turned(41, 41);
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 41; ++x) turned.row(x)[y] = step.row(y)[x];
-  EXPECT_NEAR(detectFeatures(turned, kFlipPixelsPerDegree).points.row(24)[20],
+  EXPECT_NEAR(detectFeatures(turned, flipPixelsPerDegree).points.row(24)[20],
               found.points.row(20)[24], 1e-6);
   EXPECT_GT(found.points.row(20)[24], 0.1);
   EXPECT_NEAR(flipFeatureDifference(1, 0.5F, 0.2F, 0.3F), std::sqrt(0.5 / std::sqrt(2)), 1e-6);

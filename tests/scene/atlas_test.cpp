@@ -26,7 +26,7 @@ Paint solid(Rgba color) {
   return [=](int, int) { return color; };
 }
 
-const Rgba kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 255};
+const Rgba red{255, 0, 0, 255}, green{0, 255, 0, 255}, blue{0, 0, 255, 255};
 
 // One BLEND material per texture.
 Scene sceneOf(std::vector<Texture> textures) {
@@ -71,7 +71,7 @@ TEST(Atlas, NoTexturesNoAtlas) {
 }
 
 TEST(Atlas, OnlyAlphaThatCountsGoesToTheTransparentOne) {
-  Scene scene = sceneOf({texture(8, 8, solid(kRed)), texture(8, 8, solid({0, 255, 0, 128}))});
+  Scene scene = sceneOf({texture(8, 8, solid(red)), texture(8, 8, solid({0, 255, 0, 128}))});
   scene.materials.push_back({.texture = 1, .ignoreTextureAlpha = true});
   scene.materials.push_back({.texture = 1, .alphaMode = AlphaMode::mask});
   const SceneAtlases atlases = buildAtlases(scene);
@@ -84,11 +84,11 @@ TEST(Atlas, OnlyAlphaThatCountsGoesToTheTransparentOne) {
   EXPECT_LT(
       difference(Decoded(atlases.transparent, atlases.ofMaterial[1], 0).at(0, 0), {0, 255, 0, 128}),
       2);
-  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[2], 0).at(0, 0), kGreen);
+  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[2], 0).at(0, 0), green);
 }
 
 TEST(Atlas, LevelsHalveAndHoldWholeBlocks) {
-  const SceneAtlases atlases = buildAtlases(sceneOf({texture(300, 10, solid(kRed))}));
+  const SceneAtlases atlases = buildAtlases(sceneOf({texture(300, 10, solid(red))}));
   const auto& levels = atlases.opaque.levels;
   ASSERT_FALSE(levels.empty());
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -102,7 +102,7 @@ TEST(Atlas, LevelsHalveAndHoldWholeBlocks) {
 
 TEST(Atlas, NeighboursNeverBleedAtAnyLevel) {
   std::vector<Texture> textures;
-  const std::vector<Rgba> colors{kRed, kGreen, kBlue};
+  const std::vector<Rgba> colors{red, green, blue};
   const std::vector<std::pair<int, int>> sizes{{64, 64},  {1, 1},  {100, 37},
                                                {64, 200}, {33, 5}, {128, 128}};
   for (std::size_t i = 0; i < sizes.size(); ++i)
@@ -171,7 +171,7 @@ TEST(Atlas, MipsAverageInLinearLight) {
 }
 
 TEST(Atlas, MipsDoNotTakeColorFromWhatIsInvisible) {
-  const auto chess = [](int x, int y) { return (x + y) % 2 ? kRed : Rgba{0, 255, 0, 0}; };
+  const auto chess = [](int x, int y) { return (x + y) % 2 ? red : Rgba{0, 255, 0, 0}; };
   const SceneAtlases atlases = buildAtlases(sceneOf({texture(64, 64, chess)}));
   EXPECT_LE(
       difference(Decoded(atlases.transparent, atlases.ofMaterial[0], 1).at(3, 3), {255, 0, 0, 128}),
@@ -181,7 +181,7 @@ TEST(Atlas, MipsDoNotTakeColorFromWhatIsInvisible) {
 }
 
 TEST(Atlas, WhatDoesNotFitIsHalvedLargestFirst) {
-  const Scene scene = sceneOf({texture(400, 200, solid(kRed)), texture(30, 30, solid(kGreen))});
+  const Scene scene = sceneOf({texture(400, 200, solid(red)), texture(30, 30, solid(green))});
   const SceneAtlases atlases = buildAtlases(scene, 256);
   EXPECT_LE(atlases.opaque.width, 256);
   EXPECT_LE(atlases.opaque.height, 256);
@@ -192,14 +192,14 @@ TEST(Atlas, WhatDoesNotFitIsHalvedLargestFirst) {
   };
   EXPECT_EQ(texels(0), glm::vec2(100, 50));
   EXPECT_EQ(texels(1), glm::vec2(30, 30));
-  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[0], 0).at(99, 49), kRed);
-  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[1], 0).at(29, 29), kGreen);
+  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[0], 0).at(99, 49), red);
+  EXPECT_EQ(Decoded(atlases.opaque, atlases.ofMaterial[1], 0).at(29, 29), green);
   EXPECT_EQ(buildAtlases(scene).texturesHalved, 0u);
 }
 
 TEST(Atlas, TooManyTexturesAreRefused) {
   EXPECT_NE(messageOf<InputError>([] {
-              buildAtlases(sceneOf(std::vector<Texture>(5, texture(2, 2, solid(kRed)))), 256);
+              buildAtlases(sceneOf(std::vector<Texture>(5, texture(2, 2, solid(red)))), 256);
             }),
             "");
 }

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float pi = std::numbers::pi_v<float>;
 
 glm::vec3 project(const Camera& camera, glm::vec3 point, float aspect = 1.0f) {
   const glm::vec4 clip =
@@ -27,7 +27,7 @@ void expectNear(glm::vec3 found, glm::vec3 wanted, float tolerance = 1e-5f) {
       << " " << wanted.z;
 }
 
-const Bounds kBounds{{-1, -2, -3}, {3, 2, 1}};  // centre (1, 0, -1), radius 2 sqrt(3)
+const Bounds testBounds{{-1, -2, -3}, {3, 2, 1}};  // centre (1, 0, -1), radius 2 sqrt(3)
 
 TEST(Camera, DepthIsReversedAndInfinite) {
   const Camera camera{.eye = {0, 0, 5}, .near = 0.5f};
@@ -38,7 +38,7 @@ TEST(Camera, DepthIsReversedAndInfinite) {
 }
 
 TEST(Camera, ScreenHasXRightAndYDown) {
-  const Camera camera{.eye = {0, 0, 5}, .fovY = 0.5f * kPi};  // the edge is at 45 degrees
+  const Camera camera{.eye = {0, 0, 5}, .fovY = 0.5f * pi};  // the edge is at 45 degrees
   const glm::vec3 corner = project(camera, {5, 5, 0});
   EXPECT_NEAR(corner.x, 1.0f, 1e-5f);
   EXPECT_NEAR(corner.y, -1.0f, 1e-5f);
@@ -48,12 +48,12 @@ TEST(Camera, ScreenHasXRightAndYDown) {
 
 TEST(Camera, OrbitTurnsFromPlusZTowardsPlusX) {
   expectNear(orbitCamera({1, 2, 3}, 2, 0, 0, 1).eye, {1, 2, 5});
-  expectNear(orbitCamera({1, 2, 3}, 2, 0.5f * kPi, 0, 1).eye, {3, 2, 3});
-  expectNear(orbitCamera({1, 2, 3}, 2, 0, 0.5f * kPi, 1).eye, {1, 4, 3});
+  expectNear(orbitCamera({1, 2, 3}, 2, 0.5f * pi, 0, 1).eye, {3, 2, 3});
+  expectNear(orbitCamera({1, 2, 3}, 2, 0, 0.5f * pi, 1).eye, {1, 4, 3});
 }
 
 TEST(Camera, StraightDownIsAPictureToo) {
-  for (const float pitch : {-0.5f * kPi, 0.5f * kPi}) {
+  for (const float pitch : {-0.5f * pi, 0.5f * pi}) {
     const glm::mat4 view = orbitCamera({0, 0, 0}, 2, 0.3f, pitch, 1).viewMatrix();
     EXPECT_NEAR(glm::determinant(view), 1.0f, 1e-4f);
   }
@@ -91,28 +91,28 @@ TEST(Camera, DepthRangeIsThatOfTheCornersBeyondTheNearPlane) {
 }
 
 TEST(Camera, OverviewLooksAtTheCentreFromTwiceTheRadius) {
-  const Camera camera = overviewCamera(kBounds);
+  const Camera camera = overviewCamera(testBounds);
   expectNear(camera.target, {1, 0, -1});
-  EXPECT_NEAR(glm::distance(camera.eye, camera.target), 2 * kBounds.radius(), 1e-4f);
+  EXPECT_NEAR(glm::distance(camera.eye, camera.target), 2 * testBounds.radius(), 1e-4f);
   EXPECT_GT(camera.near, 0.0f);
   EXPECT_GT(overviewCamera({}).near, 0.0f) << "a scene that is one point";
 }
 
 TEST(ParseCamera, Orbit) {
-  const Camera camera = parseCamera("orbit:0, 0.5,10", kBounds);
-  expectNear(camera.target, kBounds.center());
+  const Camera camera = parseCamera("orbit:0, 0.5,10", testBounds);
+  expectNear(camera.target, testBounds.center());
   EXPECT_NEAR(glm::distance(camera.eye, camera.target), 10, 1e-5f);
   EXPECT_NEAR(camera.eye.y, 10 * std::sin(0.5f), 1e-5f);
-  EXPECT_NEAR(camera.fovY, kPi / 3, 1e-6f);
-  EXPECT_NEAR(parseCamera("orbit:0,0,10,90", kBounds).fovY, kPi / 2, 1e-6f);
+  EXPECT_NEAR(camera.fovY, pi / 3, 1e-6f);
+  EXPECT_NEAR(parseCamera("orbit:0,0,10,90", testBounds).fovY, pi / 2, 1e-6f);
 }
 
 TEST(ParseCamera, Look) {
-  const Camera camera = parseCamera("look:1,2,3,-4.5,5,1e1,70", kBounds);
+  const Camera camera = parseCamera("look:1,2,3,-4.5,5,1e1,70", testBounds);
   expectNear(camera.eye, {1, 2, 3});
   expectNear(camera.target, {-4.5f, 5, 10});
-  EXPECT_NEAR(camera.fovY, 70 * kPi / 180, 1e-6f);
-  EXPECT_NEAR(parseCamera("look:0,0,0,1,0,0", kBounds).fovY, kPi / 3, 1e-6f);
+  EXPECT_NEAR(camera.fovY, 70 * pi / 180, 1e-6f);
+  EXPECT_NEAR(parseCamera("look:0,0,0,1,0,0", testBounds).fovY, pi / 3, 1e-6f);
 }
 
 TEST(ParseCamera, RefusesWhatItCannotMean) {
@@ -120,11 +120,12 @@ TEST(ParseCamera, RefusesWhatItCannotMean) {
        {"", "orbit", "orbit:", "orbit:1,2", "orbit:1,2,3,4,5", "orbit:1,2,x", "orbit:1,2,3,",
         "orbit:1,2,nan", "orbit:inf,0,1", "orbit:1 2 3", "look:1,2,3,4,5", "look:1,2,3,4,5,6,7,8",
         "orbit:1,2,1e60", "Look:1,2,3,4,5,6"})
-    EXPECT_THAT(messageOf<InputError>([&] { parseCamera(text, kBounds); }),
+    EXPECT_THAT(messageOf<InputError>([&] { parseCamera(text, testBounds); }),
                 HasSubstr("orbit:YAW,PITCH,DISTANCE"))
         << text;
   const auto refused = [](const char* text, const char* why) {
-    EXPECT_THAT(messageOf<InputError>([&] { parseCamera(text, kBounds); }), HasSubstr(why)) << text;
+    EXPECT_THAT(messageOf<InputError>([&] { parseCamera(text, testBounds); }), HasSubstr(why))
+        << text;
   };
   refused("orbit:0,0,0", "distance is 0");
   refused("orbit:0,0,-1", "distance is -1");

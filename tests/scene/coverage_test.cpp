@@ -23,7 +23,7 @@ TEST(Coverage, CountsPixelCentres) {
   builder.quad({9, 0, 0}, {1, 0, 0}, {0, 1, 0}, glm::vec3(1), material);   // outside
   builder.quad({0, 0, 3}, {1, 0, 0}, {0, 1, 0}, glm::vec3(1), material);   // behind the eye
   const Scene scene = builder.take();
-  const Camera camera{.eye = {0, 0, 1}, .fovY = kTurn / 4.0f, .near = 0.1f};
+  const Camera camera{.eye = {0, 0, 1}, .fovY = fullTurn / 4.0f, .near = 0.1f};
   const Coverage coverage = measureCoverage(scene, camera, 40, 20);
   // A pixel is 0.1 wide at distance 1 and 0.2 at distance 2: both quads cover 10 x 10 pixels.
   EXPECT_EQ(coverage.samples, 200u);

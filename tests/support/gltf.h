@@ -10,8 +10,8 @@
 
 namespace oitlab {
 
-inline const std::vector<float> kTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0};  // faces +Z
-inline const std::vector<float> kUp{0, 0, 1, 0, 0, 1, 0, 0, 1};
+inline const std::vector<float> triangleCorners{0, 0, 0, 1, 0, 0, 0, 1, 0};  // faces +Z
+inline const std::vector<float> upNormals{0, 0, 1, 0, 0, 1, 0, 0, 1};
 
 inline std::string png(int width, int height, const std::vector<std::uint8_t>& rgba) {
   std::string bytes;
@@ -39,9 +39,9 @@ class Gltf : public TemporaryFolder {
                      nlohmann::json node = nlohmann::json::object()) {
     GlbBuilder glb;
     glb.json["materials"] = {material};
-    node["mesh"] =
-        glb.mesh({{"POSITION", glb.positions(kTriangle)}, {"NORMAL", glb.positions(kUp)}},
-                 {{"material", 0}});
+    node["mesh"] = glb.mesh(
+        {{"POSITION", glb.positions(triangleCorners)}, {"NORMAL", glb.positions(upNormals)}},
+        {{"material", 0}});
     glb.node(node);
     return load(glb);
   }

@@ -5,18 +5,18 @@
 namespace oitlab {
 namespace {
 
-const std::vector<std::string> kMethods = {"reference", "wboit", "mboit", "lucidraster", "ll"};
+const std::vector<std::string> methods = {"reference", "wboit", "mboit", "lucidraster", "ll"};
 
 TEST(DidYouMean, FindsASlipOfTheHand) {
-  EXPECT_EQ(didYouMean("wbiot", kMethods), " (did you mean 'wboit'?)");  // swap
-  EXPECT_EQ(didYouMean("lucidrster", kMethods),
-            " (did you mean 'lucidraster'?)");                                   // missing letter
-  EXPECT_EQ(didYouMean("wwboit", kMethods), " (did you mean 'wboit'?)");         // doubled letter
-  EXPECT_EQ(didYouMean("referemce", kMethods), " (did you mean 'reference'?)");  // wrong letter
+  EXPECT_EQ(didYouMean("wbiot", methods), " (did you mean 'wboit'?)");  // swap
+  EXPECT_EQ(didYouMean("lucidrster", methods),
+            " (did you mean 'lucidraster'?)");                                  // missing letter
+  EXPECT_EQ(didYouMean("wwboit", methods), " (did you mean 'wboit'?)");         // doubled letter
+  EXPECT_EQ(didYouMean("referemce", methods), " (did you mean 'reference'?)");  // wrong letter
 }
 
 TEST(DidYouMean, IgnoresCase) {
-  EXPECT_EQ(didYouMean("WBOIT", kMethods), " (did you mean 'wboit'?)");
+  EXPECT_EQ(didYouMean("WBOIT", methods), " (did you mean 'wboit'?)");
   EXPECT_EQ(didYouMean("width", {"Width"}), " (did you mean 'Width'?)");
 }
 
@@ -32,8 +32,8 @@ TEST(DidYouMean, CountsASwapAsOneSlip) {
 }
 
 TEST(DidYouMean, CompletesAnAbbreviation) {
-  EXPECT_EQ(didYouMean("ref", kMethods), " (did you mean 'reference'?)");
-  EXPECT_EQ(didYouMean("Lucid", kMethods), " (did you mean 'lucidraster'?)");
+  EXPECT_EQ(didYouMean("ref", methods), " (did you mean 'reference'?)");
+  EXPECT_EQ(didYouMean("Lucid", methods), " (did you mean 'lucidraster'?)");
   EXPECT_EQ(didYouMean("hair", {"hairballs_and_more", "hairball_scene"}),
             " (did you mean 'hairball_scene'?)");
 }
@@ -43,10 +43,10 @@ TEST(DidYouMean, PrefersASlipToAnAbbreviation) {
 }
 
 TEST(DidYouMean, StaysSilentWhenNothingIsClose) {
-  EXPECT_EQ(didYouMean("hairball", kMethods), "");
-  EXPECT_EQ(didYouMean("r", kMethods), "");
+  EXPECT_EQ(didYouMean("hairball", methods), "");
+  EXPECT_EQ(didYouMean("r", methods), "");
   EXPECT_EQ(didYouMean("x", {"y"}), "");
-  EXPECT_EQ(didYouMean("", kMethods), "");
+  EXPECT_EQ(didYouMean("", methods), "");
   EXPECT_EQ(didYouMean("wboit", {}), "");
 }
 

@@ -7,7 +7,7 @@
 namespace oitlab {
 namespace {
 
-constexpr float kOpacity = 0.5f;
+constexpr float sceneOpacity = 0.5f;
 
 // A bump on the unit sphere around `direction`, of this height and `width` radians wide.
 float bump(glm::vec3 p, glm::vec3 direction, float height, float width) {
@@ -35,7 +35,7 @@ glm::vec3 onBunny(glm::vec3 d) {
 }
 
 void bunnyStructure(MeshBuilder& builder, float fineness) {
-  const std::uint32_t material = builder.blendMaterial(kOpacity);
+  const std::uint32_t material = builder.blendMaterial(sceneOpacity);
   ball(builder, scaledCount(110, std::sqrt(fineness), 1), {{0.75f, 0.62f, 0.5f}, material},
        onBunny);
 }
@@ -69,7 +69,7 @@ void scaly(MeshBuilder& builder, int around, int along, float scales, const Pain
            Line&& line, Girth&& thickness) {
   const auto ring = [&](float u, float t) {
     const Frame frame = frameAround(line(t + 1e-3f) - line(t - 1e-3f));
-    const float a = u * kTurn;
+    const float a = u * fullTurn;
     const float row = t * scales, column = u * 36.0f + (std::fmod(std::floor(row), 2.0f) * 0.5f);
     const float scale = 1.0f + 0.07f * (row - std::floor(row)) *
                                    std::abs(std::sin(std::numbers::pi_v<float> * column));
@@ -88,7 +88,7 @@ void scaly(MeshBuilder& builder, int around, int along, float scales, const Pain
 
 void dragonStructure(MeshBuilder& builder, float fineness) {
   const float s = std::sqrt(fineness);
-  const std::uint32_t material = builder.blendMaterial(kOpacity);
+  const std::uint32_t material = builder.blendMaterial(sceneOpacity);
   const Paint skin{{0.35f, 0.6f, 0.42f}, material}, horn{{0.8f, 0.7f, 0.45f}, material};
   scaly(builder, scaledCount(300, s, 5), scaledCount(1120, s, 12), 130.0f, skin, spine, girth);
   for (const float at : {0.44f, 0.7f})  // legs

@@ -9,14 +9,14 @@ namespace {
 void addCard(MeshBuilder& builder, glm::vec3 center, glm::vec3 right, glm::vec3 up, bool pentagon,
              glm::vec3 normal, const Paint& paint) {
   // Two corners of the pentagon replace one corner of the square, where the texture is empty.
-  constexpr std::array<glm::vec2, 5> kPentagon{
+  constexpr std::array<glm::vec2, 5> pentagonCorners{
       {{-0.7f, -1.0f}, {0.7f, -1.0f}, {1.0f, 0.2f}, {0.0f, 1.0f}, {-1.0f, 0.2f}}};
-  constexpr std::array<glm::vec2, 4> kQuad{
+  constexpr std::array<glm::vec2, 4> quadCorners{
       {{-1.0f, -1.0f}, {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}}};
   const int corners = pentagon ? 5 : 4;
   const auto first = std::uint32_t(builder.vertexCount());
   for (int k = 0; k < corners; ++k) {
-    const glm::vec2 c = pentagon ? kPentagon[std::size_t(k)] : kQuad[std::size_t(k)];
+    const glm::vec2 c = pentagon ? pentagonCorners[std::size_t(k)] : quadCorners[std::size_t(k)];
     builder.vertex(center + c.x * right + c.y * up, normal, {0.5f + 0.5f * c.x, 0.5f - 0.5f * c.y},
                    paint.color, paint.material);
   }
@@ -28,7 +28,7 @@ void addCard(MeshBuilder& builder, glm::vec3 center, glm::vec3 right, glm::vec3 
 
 glm::vec3 randomDirection(Pcg32& random) {
   const float y = random.uniform(-1.0f, 1.0f);
-  const float angle = kTurn * random.uniform();
+  const float angle = fullTurn * random.uniform();
   const float r = std::sqrt(std::max(1.0f - y * y, 0.0f));
   return {r * std::cos(angle), y, r * std::sin(angle)};
 }
@@ -65,7 +65,7 @@ void addTrunk(MeshBuilder& builder, const TrunkShape& shape, const Paint& paint)
     std::vector<float> radii;
     for (int i = 0; i <= n; ++i) {
       const float t = float(i) / float(n);
-      path.push_back(glm::mix(from, to, t) + std::sin(0.5f * kTurn * t) * aside);
+      path.push_back(glm::mix(from, to, t) + std::sin(0.5f * fullTurn * t) * aside);
       radii.push_back(radius + (tip - radius) * t);
     }
     tube(builder, path, shape.sides, radii, false, paint);

@@ -66,10 +66,10 @@ Texture leafClusterTexture(int size, int leaves, float leafLength, glm::vec3 col
     // Denser towards the centre, and away from the border: a cut leaf would show as a straight
     // edge.
     const float room = std::max(0.5f - 0.6f * leafLength, 0.0f);
-    const glm::vec2 center =
-        glm::vec2(0.5f) + room * std::sqrt(random.uniform()) * direction(kTurn * random.uniform());
+    const glm::vec2 center = glm::vec2(0.5f) + room * std::sqrt(random.uniform()) *
+                                                   direction(fullTurn * random.uniform());
     const glm::vec2 half =
-        0.5f * leafLength * random.uniform(0.7f, 1.0f) * direction(kTurn * random.uniform());
+        0.5f * leafLength * random.uniform(0.7f, 1.0f) * direction(fullTurn * random.uniform());
     const glm::vec2 a = center - half, b = center + half;
     const glm::vec3 shade = color * random.uniform(0.65f, 1.25f);
     canvas.paint(center, leafLength, shade,
@@ -86,7 +86,7 @@ Texture needleTexture(int size, glm::vec3 color, std::uint64_t seed) {
   const float soft = 1.5f / float(size);
   const glm::vec3 bark(0.35f, 0.25f, 0.18f);
   for (int twig = 0; twig < 9; ++twig) {
-    const float angle = kTurn * (float(twig) + random.uniform(-0.3f, 0.3f)) / 9.0f;
+    const float angle = fullTurn * (float(twig) + random.uniform(-0.3f, 0.3f)) / 9.0f;
     const glm::vec2 tip = glm::vec2(0.5f) + random.uniform(0.26f, 0.36f) * direction(angle);
     for (int needle = 0; needle < 56; ++needle) {
       const glm::vec2 root = glm::mix(glm::vec2(0.5f), tip, float(needle + 1) / 56.0f);
@@ -108,7 +108,7 @@ Texture puffTexture(int size, float opacity, std::uint64_t seed) {
   // Many faint blobs make the smoke uneven.
   for (int i = 0; i < 60; ++i) {
     const glm::vec2 center =
-        glm::vec2(0.5f) + 0.28f * random.uniform() * direction(kTurn * random.uniform());
+        glm::vec2(0.5f) + 0.28f * random.uniform() * direction(fullTurn * random.uniform());
     const float radius = random.uniform(0.08f, 0.2f);
     const glm::vec3 shade(random.uniform(0.7f, 1.0f));
     canvas.paint(center, radius, shade, [&](glm::vec2 p) {

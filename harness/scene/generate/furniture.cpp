@@ -23,7 +23,7 @@ void addChair(MeshBuilder& builder, const Placement& place, float fineness, cons
   const int sides = scaledCount(8, s, 3), segments = scaledCount(4, s, 1);
   pipe(builder, place({0, 0.1f, 0}), place({0, 0.44f, 0}), 0.03f, sides, segments, true, frame);
   for (int leg = 0; leg < 5; ++leg) {
-    const float a = kTurn * float(leg) / 5.0f;
+    const float a = fullTurn * float(leg) / 5.0f;
     const glm::vec3 foot(0.3f * std::cos(a), 0.06f, 0.3f * std::sin(a));
     pipe(builder, place({0, 0.12f, 0}), place(foot), 0.018f, sides, segments, true, frame);
     ball(builder, scaledCount(3, s, 1), frame,
@@ -33,7 +33,7 @@ void addChair(MeshBuilder& builder, const Placement& place, float fineness, cons
     const int bend = scaledCount(16, s, 3);
     std::vector<glm::vec3> path;
     for (int i = 0; i <= bend; ++i) {
-      const float a = 0.5f * kTurn * float(i) / float(bend);
+      const float a = 0.5f * fullTurn * float(i) / float(bend);
       path.push_back(place({side, 0.47f + 0.2f * std::sin(a), -0.2f * std::cos(a)}));
     }
     tube(builder, path, sides, std::vector<float>(path.size(), 0.02f), true, frame);
@@ -51,10 +51,10 @@ void addColumn(MeshBuilder& builder, glm::vec3 foot, float height, float radius,
   const float low = 0.37f * radius, high = height - 0.4f * radius;
   const int sides = scaledCount(36, s, 5);
   sheet(builder, sides, scaledCount(40, s, 3), true, paint, [&](float u, float v) {
-    const float flute = 1.0f - 0.05f * std::abs(std::sin(9.0f * u * kTurn));
+    const float flute = 1.0f - 0.05f * std::abs(std::sin(9.0f * u * fullTurn));
     const float base = 0.4f * std::exp(-v * 30.0f), cap = 0.45f * std::exp(-(1.0f - v) * 14.0f);
     const float r = radius * (flute - 0.12f * v + base + cap);
-    return place({r * std::cos(u * kTurn), low + (high - low) * v, -r * std::sin(u * kTurn)});
+    return place({r * std::cos(u * fullTurn), low + (high - low) * v, -r * std::sin(u * fullTurn)});
   });
 }
 
@@ -64,7 +64,7 @@ void addArch(MeshBuilder& builder, glm::vec3 from, glm::vec3 to, float thick, fl
   const float radius = 0.5f * glm::distance(from, to);
   std::vector<glm::vec3> path;
   for (int i = 0; i <= n; ++i) {
-    const float a = 0.5f * kTurn * float(i) / float(n);
+    const float a = 0.5f * fullTurn * float(i) / float(n);
     path.push_back(glm::mix(from, to, 0.5f - 0.5f * std::cos(a)) +
                    glm::vec3(0, radius * std::sin(a), 0));
   }
@@ -75,7 +75,7 @@ void addVase(MeshBuilder& builder, glm::vec3 foot, float height, float fineness,
              const Paint& paint) {
   const float s = std::sqrt(fineness);
   lathe(builder, {foot}, scaledCount(32, s, 4), scaledCount(30, s, 3), paint, [&](float v) {
-    const float belly = 0.2f + 0.22f * std::sin(0.5f * kTurn * std::pow(v, 0.8f) * 1.05f) +
+    const float belly = 0.2f + 0.22f * std::sin(0.5f * fullTurn * std::pow(v, 0.8f) * 1.05f) +
                         0.08f * glm::smoothstep(0.85f, 1.0f, v);
     return glm::vec2(height * belly, height * v);
   });
@@ -90,7 +90,7 @@ void addBalustrade(MeshBuilder& builder, glm::vec3 from, glm::vec3 to, float hei
   for (int i = 0; i < posts; ++i)
     lathe(builder, {from + along * ((float(i) + 0.5f) / float(posts))}, sides, rings, paint,
           [&](float v) {
-            return glm::vec2(0.25f * gap * (0.6f + 0.4f * std::sin(kTurn * (1.5f * v + 0.6f))),
+            return glm::vec2(0.25f * gap * (0.6f + 0.4f * std::sin(fullTurn * (1.5f * v + 0.6f))),
                              height * 0.92f * v);
           });
   const float turn = std::atan2(along.x, along.z);

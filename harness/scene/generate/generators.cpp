@@ -10,9 +10,9 @@ namespace oitlab {
 
 std::span<const GeneratedScene* const> generatedScenes() {
 #define OITLAB_ADDRESS(name) &generated::name,
-  static constexpr const GeneratedScene* kScenes[] = {OITLAB_GENERATED_SCENES(OITLAB_ADDRESS)};
+  static constexpr const GeneratedScene* allScenes[] = {OITLAB_GENERATED_SCENES(OITLAB_ADDRESS)};
 #undef OITLAB_ADDRESS
-  return kScenes;
+  return allScenes;
 }
 
 const GeneratedScene* findGenerated(const std::string& name) {

@@ -6,8 +6,8 @@
 namespace oitlab {
 namespace {
 
-constexpr float kOpacity = 0.5f;
-constexpr std::uint64_t kSeed = 17;
+constexpr float sceneOpacity = 0.5f;
+constexpr std::uint64_t seed = 17;
 
 // A strand winds around the centre on a circle whose plane rotates and whose radius varies.
 void addStrand(MeshBuilder& builder, Pcg32 random, int segments, int sides, float radius,
@@ -16,11 +16,11 @@ void addStrand(MeshBuilder& builder, Pcg32 random, int segments, int sides, floa
   const Frame plane = frameAround(axis);
   const float reach = std::sqrt(random.uniform(0.05f, 1.0f)), breath = random.uniform(0.05f, 0.3f);
   const float turns = random.uniform(0.9f, 1.5f), tilt = random.uniform(-0.6f, 0.6f);
-  const float phase = kTurn * random.uniform(), wave = random.uniform(1.0f, 4.0f);
+  const float phase = fullTurn * random.uniform(), wave = random.uniform(1.0f, 4.0f);
   std::vector<glm::vec3> path;
   for (int i = 0; i <= segments; ++i) {
     const float t = float(i) / float(segments);
-    const float angle = phase + turns * kTurn * t;
+    const float angle = phase + turns * fullTurn * t;
     const float lift = tilt * std::sin(2.3f * angle);
     const glm::vec3 out =
         std::cos(angle) * plane.right + std::sin(angle) * plane.up + lift * glm::normalize(axis);
@@ -34,7 +34,7 @@ void addStrand(MeshBuilder& builder, Pcg32 random, int segments, int sides, floa
 
 void hairStructure(MeshBuilder& builder, float fineness) {
   const float s = std::sqrt(fineness);
-  const std::uint32_t material = builder.blendMaterial(kOpacity);
+  const std::uint32_t material = builder.blendMaterial(sceneOpacity);
   const int strands = scaledCount(3000, s, 1), segments = scaledCount(160, s, 3), sides = 3;
   if (builder.counting()) {
     const auto n = std::uint64_t(strands) * sides;
@@ -43,7 +43,7 @@ void hairStructure(MeshBuilder& builder, float fineness) {
   // If there are fewer strands they are thicker, so that they cover the same area.
   const float radius = 0.00105f * 3000.0f / float(strands);
   for (int i = 0; i < strands; ++i)
-    addStrand(builder, Pcg32(kSeed, std::uint64_t(i)), segments, sides, radius, material);
+    addStrand(builder, Pcg32(seed, std::uint64_t(i)), segments, sides, radius, material);
 }
 
 void buildHairball(MeshBuilder& builder, float detail) {

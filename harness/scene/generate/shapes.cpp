@@ -36,7 +36,7 @@ void tube(MeshBuilder& builder, const std::vector<glm::vec3>& path, int sides,
       frame = frameAround(along);
     }
     for (int k = 0; k < sides; ++k) {
-      const float angle = kTurn * float(k) / float(sides);
+      const float angle = fullTurn * float(k) / float(sides);
       const glm::vec3 out = std::cos(angle) * frame.right + std::sin(angle) * frame.up;
       builder.vertex(path[std::size_t(j)] + radii[std::size_t(j)] * out, out,
                      {float(k) / float(sides), float(j) / float(n - 1)}, paint.color,
@@ -54,7 +54,7 @@ void tube(MeshBuilder& builder, const std::vector<glm::vec3>& path, int sides,
   if (!closed) return;
   const auto cap = [&](glm::vec3 centre, glm::vec3 out, float radius, const Frame& f, float sense) {
     fan(builder, sides, glm::normalize(out), paint, [&](int k) {
-      const float angle = sense * kTurn * float(k) / float(sides);
+      const float angle = sense * fullTurn * float(k) / float(sides);
       return centre + radius * (std::cos(angle) * f.right + std::sin(angle) * f.up);
     });
   };

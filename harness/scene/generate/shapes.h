@@ -11,7 +11,7 @@ namespace oitlab {
 // The shapes that generated scenes consist of. With a counting builder each adds its numbers at
 // once. Colours are linear.
 
-constexpr float kTurn = 2.0f * std::numbers::pi_v<float>;  ///< a full turn, radians
+constexpr float fullTurn = 2.0f * std::numbers::pi_v<float>;  ///< a full turn, radians
 
 /// The material and colour of a shape.
 struct Paint {
@@ -104,7 +104,7 @@ void lathe(MeshBuilder& builder, const Placement& place, int sides, int rings, c
            Profile&& profile) {
   sheet(builder, sides, rings, true, paint, [&](float u, float v) {
     const glm::vec2 p = profile(v);
-    return place({p.x * std::cos(u * kTurn), p.y, -p.x * std::sin(u * kTurn)});
+    return place({p.x * std::cos(u * fullTurn), p.y, -p.x * std::sin(u * fullTurn)});
   });
 }
 
@@ -120,7 +120,7 @@ void ball(MeshBuilder& builder, int n, const Paint& paint, Position&& position) 
         const auto bend = [n](float x) {
           const int step = 2 * int(std::lround(x * float(n))) - n;
           if (step == n || step == -n) return step > 0 ? 1.0f : -1.0f;
-          return std::tan(float(step) / float(n) * 0.125f * kTurn);
+          return std::tan(float(step) / float(n) * 0.125f * fullTurn);
         };
         const float a = bend(u), b = bend(v);
         glm::vec3 p(0.0f);

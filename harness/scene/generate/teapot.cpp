@@ -16,8 +16,8 @@ namespace {
 
 using Patch = std::array<std::array<glm::dvec3, 4>, 4>;  // [v][u], u x v points outwards
 
-constexpr int kSegments = 16;  // per patch edge at full detail: the 16K triangles of the papers
-constexpr float kOpacity = 0.5f;
+constexpr int segments = 16;  // per patch edge at full detail: the 16K triangles of the papers
+constexpr float sceneOpacity = 0.5f;
 
 // A quarter of a surface of revolution. The inner control points of the arc are on the tangent, at
 // `bulge` times the radius: 0.56 in Newell's data, but 0.5625 at the knob.
@@ -27,7 +27,7 @@ struct Profile {
 };
 
 // Each goes from the top or the outside inwards, so that the outside is the same side for all.
-constexpr Profile kProfiles[] = {
+constexpr Profile profiles[] = {
     {{{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}}},  // rim
     {{{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}}},            // body
     {{{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}}},
@@ -37,7 +37,7 @@ constexpr Profile kProfiles[] = {
 };
 
 // The halves with y <= 0. Rows go along the handle or spout, columns around it.
-constexpr Patch kHalves[] = {
+constexpr Patch halfPatches[] = {
     // handle, from its upper end
     {{{{{-1.6, 0, 2.025}, {-1.6, -0.3, 2.025}, {-1.5, -0.3, 2.25}, {-1.5, 0, 2.25}}},
       {{{-2.3, 0, 2.025}, {-2.3, -0.3, 2.025}, {-2.5, -0.3, 2.25}, {-2.5, 0, 2.25}}},
@@ -92,9 +92,9 @@ Patch mirror(const Patch& half) {
 
 std::vector<Patch> teapotPatches() {
   std::vector<Patch> patches;
-  for (const Profile& profile : kProfiles)
+  for (const Profile& profile : profiles)
     for (int quarter = 0; quarter < 4; ++quarter) patches.push_back(revolve(profile, quarter));
-  for (const Patch& half : kHalves) {
+  for (const Patch& half : halfPatches) {
     patches.push_back(half);
     patches.push_back(mirror(half));
   }
@@ -163,8 +163,8 @@ void tessellate(MeshBuilder& builder, const Patch& patch, int n, std::uint32_t m
 }
 
 void buildTeapot(MeshBuilder& builder, float detail) {
-  const int n = std::max(1, int(std::lround(kSegments * std::sqrt(detail))));
-  const std::uint32_t material = builder.blendMaterial(kOpacity);
+  const int n = std::max(1, int(std::lround(segments * std::sqrt(detail))));
+  const std::uint32_t material = builder.blendMaterial(sceneOpacity);
   for (const Patch& patch : teapotPatches()) tessellate(builder, patch, n, material);
   builder.view("default", orbitCamera({0.2f, 1.5f, 0.0f}, 5.8f, 0.61f, 0.33f, 0.8726646f));
 }

@@ -13,7 +13,7 @@ float sizeAt(float halfSize, float fineness) {
   return halfSize / std::sqrt(std::min(fineness, 1.0f));
 }
 
-constexpr glm::vec3 kBark(0.32f, 0.2f, 0.12f);
+constexpr glm::vec3 barkColor(0.32f, 0.2f, 0.12f);
 
 void pineStructure(MeshBuilder& builder, float fineness) {
   const std::uint32_t needles = builder.texturedMaterial([] {
@@ -21,7 +21,7 @@ void pineStructure(MeshBuilder& builder, float fineness) {
   });
   const std::uint32_t bark = builder.blendMaterial(0.5f);
   // A shrub: several crowns on top of each other.
-  constexpr int kCrowns = 4;
+  constexpr int crownCount = 4;
   addTrunk(builder,
            {.height = 2.2f,
             .radius = 0.14f,
@@ -30,9 +30,9 @@ void pineStructure(MeshBuilder& builder, float fineness) {
             .sides = 3,
             .segments = 3,
             .seed = 3},
-           {kBark, bark});
-  for (int i = 0; i < kCrowns; ++i) {
-    const float up = float(i) / float(kCrowns - 1);
+           {barkColor, bark});
+  for (int i = 0; i < crownCount; ++i) {
+    const float up = float(i) / float(crownCount - 1);
     const float angle = 2.4f * float(i);
     addCards(builder,
              {.center = glm::vec3(0.4f * std::cos(angle), 1.0f + 1.5f * up, 0.4f * std::sin(angle)),
@@ -66,11 +66,11 @@ void oakStructure(MeshBuilder& builder, float fineness) {
             .sides = scaledCount(6, s, 3),
             .segments = scaledCount(17, s, 1),
             .seed = 9},
-           {kBark, bark});
+           {barkColor, bark});
   // Boughs: the crown consists of balls with gaps between them.
-  constexpr int kBoughs = 22;
+  constexpr int boughs = 22;
   Pcg32 random(21);
-  for (int i = 0; i < kBoughs; ++i) {
+  for (int i = 0; i < boughs; ++i) {
     glm::vec3 out = randomDirection(random);
     out.y = std::abs(out.y) * 0.9f;
     addCards(builder,
@@ -95,15 +95,15 @@ void buildSmoke(MeshBuilder& builder, float detail) {
   const std::uint32_t puff = builder.texturedMaterial([] { return puffTexture(128, 0.5f, 3); });
   const int cards = scaledCount(6734, detail, 8);
   // A plume of puffs that becomes wider as it rises and leans in the wind.
-  constexpr int kPuffs = 12;
-  for (int i = 0; i < kPuffs; ++i) {
-    const float up = (float(i) + 0.5f) / float(kPuffs);
+  constexpr int puffCount = 12;
+  for (int i = 0; i < puffCount; ++i) {
+    const float up = (float(i) + 0.5f) / float(puffCount);
     const float wide = 0.3f + 0.9f * up;
     addCards(builder,
              {.center = {1.2f * up * up, 3.6f * up, 0.35f * std::sin(5.0f * up)},
               .radii = {wide, 0.55f, wide},
               .halfSize = 0.105f + 0.079f * up,
-              .quads = cards * (i + 1) / kPuffs - cards * i / kPuffs,
+              .quads = cards * (i + 1) / puffCount - cards * i / puffCount,
               .seed = std::uint64_t(31 + i)},
              {glm::vec3(0.95f), puff});
   }

@@ -9,13 +9,13 @@
 namespace oitlab {
 namespace {
 
-constexpr std::uint32_t kNotYet = 0xffffffffu;
+constexpr std::uint32_t notYet = 0xffffffffu;
 
 // The square of a larger length overflows a float, and bounds and normals need such squares.
-constexpr float kLargest = 1e18f;
+constexpr float largest = 1e18f;
 
 bool usable(const glm::vec3& v) {  // false for NaN too
-  return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest;
+  return std::abs(v.x) < largest && std::abs(v.y) < largest && std::abs(v.z) < largest;
 }
 
 std::vector<glm::uvec3> assemble(const std::vector<std::uint32_t>& indices, int mode) {
@@ -106,7 +106,7 @@ void readGltfPrimitive(const GltfFile& file, const tinygltf::Primitive& primitiv
   if (mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0)
     scene.repaired("incomplete last triangles dropped");
   std::vector<glm::uvec3> triangles = assemble(indices, mode);
-  if (scene.vertices.size() + 3 * triangles.size() >= kNotYet)
+  if (scene.vertices.size() + 3 * triangles.size() >= notYet)
     fail<InputError>("{}: more vertices than 32 bits can number", place);
 
   std::vector<glm::vec3> positions(count);
@@ -145,7 +145,7 @@ void readGltfPrimitive(const GltfFile& file, const tinygltf::Primitive& primitiv
 
   // Only the vertices that this primitive uses, because many primitives may share one large list.
   // For a primitive without normals glTF demands flat ones, and then no vertex can be shared.
-  std::vector<std::uint32_t> emitted(from.normal ? count : 0, kNotYet);
+  std::vector<std::uint32_t> emitted(from.normal ? count : 0, notYet);
   scene.triangles.reserve(scene.triangles.size() + triangles.size());
   for (glm::uvec3 triangle : triangles) {
     if (mirrored) std::swap(triangle.y, triangle.z);
@@ -160,7 +160,7 @@ void readGltfPrimitive(const GltfFile& file, const tinygltf::Primitive& primitiv
       if (!from.normal)
         triangle[c] = emit(i, flat());
       else
-        triangle[c] = emitted[i] == kNotYet ? (emitted[i] = emit(i, flat())) : emitted[i];
+        triangle[c] = emitted[i] == notYet ? (emitted[i] = emit(i, flat())) : emitted[i];
     }
     scene.triangles.push_back(triangle);
   }

@@ -20,7 +20,7 @@
 namespace oitlab {
 namespace {
 
-constexpr float kLargest = 1e18f;  // as for glTF: the square of a larger length overflows
+constexpr float largest = 1e18f;  // as for glTF: the square of a larger length overflows
 
 // Passes the file to tinyobjloader line by line, so that its callbacks know the line number. Checks
 // the numbers of each line first, because tinyobjloader reads a number that it does not understand
@@ -69,7 +69,7 @@ class LineBuffer : public std::streambuf {
       if (end == at || !(space(*end) || *end == '\0'))
         fail<InputError>("{}: '{}' is not a number", place(),
                          std::string(at, std::strcspn(at, " \t")));
-      if (count < 3 && !(std::abs(value) < kLargest)) finite_ = false;
+      if (count < 3 && !(std::abs(value) < largest)) finite_ = false;
       at = end;
     }
     if (count < least)

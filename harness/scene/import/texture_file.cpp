@@ -9,7 +9,7 @@
 namespace oitlab {
 namespace {
 
-constexpr int kLargestImage = 16384;  // texels per side; every device has images of this size
+constexpr int largestImage = 16384;  // texels per side; every device has images of this size
 
 }  // namespace
 
@@ -17,7 +17,7 @@ bool decodeTexture(std::span<const unsigned char> bytes, Texture& texture) {
   int width = 0, height = 0, channels = 0;
   const int size = int(std::min<std::size_t>(bytes.size(), 0x7fffffff));
   if (size == 0 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) ||
-      width > kLargestImage || height > kLargestImage)
+      width > largestImage || height > largestImage)
     return false;
   stbi_uc* texels = stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4);
   if (!texels) return false;

@@ -127,14 +127,14 @@ TEST(Generated, TheTeapotHoldsWater) {
 
 // The triangle counts of the LucidRaster paper; for smoke those of the paper on backwards memory
 // allocation.
-const std::map<std::string, double> kPaperTriangles = {
+const std::map<std::string, double> paperTriangles = {
     {"boxes", 12000},    {"bunny", 144000},     {"conference", 331000},   {"dragon", 871000},
     {"gallery", 999000}, {"hairball", 2880000}, {"powerplant", 12759000}, {"sanmiguel", 5617000},
     {"scrubpine", 527},  {"smoke", 13468},      {"sponza_like", 262000},  {"teapot", 16000},
     {"whiteoak", 37000}};
 
 TEST(Generated, CountsAreThePapersAndScaleWithDetail) {
-  for (const auto& [name, triangles] : kPaperTriangles) {
+  for (const auto& [name, triangles] : paperTriangles) {
     SCOPED_TRACE(name);
     EXPECT_NEAR(double(generatedSize(name).triangles), triangles, 0.1 * triangles);
     for (const float detail : {0.5f, 0.1f, 0.03f}) {

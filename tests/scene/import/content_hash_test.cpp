@@ -22,7 +22,7 @@ class ContentHash : public TemporaryFolder {
 
   static void writeGltf(const std::filesystem::path& path) {
     GlbBuilder glb;
-    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)}})}});
+    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)}})}});
     glb.json["images"] = {{{"uri", "a%20b.png"}}};
     glb.json["buffers"] = {{{"uri", "x.bin"}, {"byteLength", 36}}};
     GlbBuilder::writeFile(path, glb.json.dump());

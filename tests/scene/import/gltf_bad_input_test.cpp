@@ -17,7 +17,7 @@ TEST_F(Gltf, BrokenFilesAreNamedWithThePlace) {
   const auto check = [&](const char* wanted, auto&& change) {
     SCOPED_TRACE(wanted);
     GlbBuilder glb;
-    const int positions = glb.positions(kTriangle);
+    const int positions = glb.positions(triangleCorners);
     const int indices =
         glb.accessor(std::vector<std::uint16_t>{0, 1, 2}, GlbBuilder::ushort, "SCALAR");
     glb.node({{"mesh", glb.mesh({{"POSITION", positions}}, {{"indices", indices}})}});
@@ -80,7 +80,7 @@ TEST_F(Gltf, WhatIsNoGltfAtAll) {
 
 TEST_F(Gltf, DeepNodesDoNotExhaustTheStack) {
   GlbBuilder glb;
-  const int mesh = glb.mesh({{"POSITION", glb.positions(kTriangle)}});
+  const int mesh = glb.mesh({{"POSITION", glb.positions(triangleCorners)}});
   const int depth = 20000;
   for (int i = 0; i < depth; ++i) glb.node({{"children", {i + 1}}}, i == 0);
   glb.node({{"mesh", mesh}}, false);
@@ -99,8 +99,8 @@ TEST_F(Gltf, DamageNeverCrashes) {
   glb.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
   const int indices =
       glb.accessor(std::vector<std::uint16_t>{0, 1, 2}, GlbBuilder::ushort, "SCALAR");
-  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)},
-                               {"NORMAL", glb.positions(kUp)},
+  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)},
+                               {"NORMAL", glb.positions(upNormals)},
                                {"TEXCOORD_0",
                                 glb.accessor(std::vector<float>(6), GlbBuilder::real, "VEC2")}},
                               {{"indices", indices}, {"material", 0}})},

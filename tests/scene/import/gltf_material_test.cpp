@@ -60,7 +60,8 @@ class GltfTexture : public Gltf {
       glb.json["materials"].push_back(
           {{"alphaMode", "BLEND"},
            {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
-    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)}}, {{"material", 0}})}});
+    glb.node(
+        {{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)}}, {{"material", 0}})}});
     glb.json["textures"] = {{{"source", 0}}};
     return glb;
   }
@@ -108,7 +109,7 @@ TEST_F(GltfTexture, ReadsImagesAndBuffersBesideTheFile) {
   const std::vector<std::uint8_t> rgba{1, 2, 3, 255};
   GlbBuilder::writeFile(folder_ / "a b.png", png(1, 1, rgba));
   GlbBuilder::writeFile(folder_ / "x.bin",
-                        std::string(reinterpret_cast<const char*>(kTriangle.data()), 36));
+                        std::string(reinterpret_cast<const char*>(triangleCorners.data()), 36));
   GlbBuilder glb = textured();
   glb.json["images"] = {{{"uri", "a%20b.png"}}};
   glb.json["buffers"] = {{{"uri", "x.bin"}, {"byteLength", 36}}};

@@ -58,7 +58,7 @@ TEST_F(Gltf, StripsAndFansKeepTheirWinding) {
 
 TEST_F(Gltf, OtherPrimitivesAreSkippedAndCounted) {
   GlbBuilder glb;
-  const int positions = glb.positions(kTriangle);
+  const int positions = glb.positions(triangleCorners);
   for (int mode = 0; mode < 5; ++mode)
     glb.node({{"mesh", glb.mesh({{"POSITION", positions}}, {{"mode", mode}})}});
   glb.node({{"mesh", glb.mesh({{"NORMAL", positions}})}});
@@ -70,7 +70,7 @@ TEST_F(Gltf, OtherPrimitivesAreSkippedAndCounted) {
 
 TEST_F(Gltf, NodesAreVisitedDepthFirstWithTheirTransforms) {
   GlbBuilder glb;
-  const int mesh = glb.mesh({{"POSITION", glb.positions(kTriangle)}});
+  const int mesh = glb.mesh({{"POSITION", glb.positions(triangleCorners)}});
   const float half = std::sqrt(0.5f);
   const int child = glb.node({{"mesh", mesh},
                               {"translation", {1, 0, 0}},
@@ -110,7 +110,7 @@ TEST_F(Gltf, MirrorsKeepFacesAndNormalsTogether) {
 TEST_F(Gltf, UselessNormalsAreReplacedAndCounted) {
   GlbBuilder glb;
   const std::vector<float> normals{0, 0, 0, std::nanf(""), 0, 0, 0, 0, 1};
-  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)},
+  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)},
                                {"NORMAL", glb.positions(normals)}})}});
   const Scene scene = load(glb);
   EXPECT_EQ(repairs(scene, "normals"), 2u);
@@ -121,7 +121,7 @@ TEST_F(Gltf, UselessNormalsAreReplacedAndCounted) {
 TEST_F(Gltf, VertexColorsOfEveryKind) {
   const auto color = [&](auto data, GlbBuilder::Type type, const char* shape, bool normalized) {
     GlbBuilder glb;
-    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)},
+    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)},
                                  {"COLOR_0", glb.accessor(data, type, shape, normalized)}})}});
     return load(glb).vertices[0].color;
   };
@@ -147,7 +147,7 @@ TEST_F(Gltf, TextureCoordinatesAreScaledChosenAndMoved) {
            {"extensions",
             {{"KHR_texture_transform",
               {{"texCoord", 1}, {"offset", {0.5, 0}}, {"scale", {2, 3}}}}}}}}}}}};
-  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)},
+  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)},
                                {"TEXCOORD_0",
                                 glb.accessor(std::vector<float>(6), GlbBuilder::real, "VEC2")},
                                {"TEXCOORD_1", glb.accessor(set1, GlbBuilder::ubyte, "VEC2", true)}},
@@ -159,7 +159,7 @@ TEST_F(Gltf, TextureCoordinatesAreScaledChosenAndMoved) {
 
 TEST_F(Gltf, CamerasBecomeViews) {
   GlbBuilder glb;
-  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)}})}});
+  glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)}})}});
   glb.json["cameras"] = {{{"type", "perspective"},
                           {"name", "front"},
                           {"perspective", {{"yfov", 0.7}, {"znear", 0.2}}}},

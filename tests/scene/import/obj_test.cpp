@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string triangleCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 class Obj : public TemporaryFolder {
  protected:
@@ -43,7 +43,8 @@ std::uint64_t repairsLike(const Scene& scene, const std::string& part) {
 }
 
 TEST_F(Obj, PolygonsBecomeFans) {
-  const Scene scene = load(kTriangle + "v 1 1 0\ng a b\no thing\ns 1\nf 1 2 4 3\nf -4 -3 -2\n");
+  const Scene scene =
+      load(triangleCorners + "v 1 1 0\ng a b\no thing\ns 1\nf 1 2 4 3\nf -4 -3 -2\n");
   EXPECT_EQ(scene.name, "x");
   ASSERT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(scene.vertices[scene.triangles[1].z].position, glm::vec3(0, 1, 0));
@@ -53,8 +54,9 @@ TEST_F(Obj, PolygonsBecomeFans) {
 }
 
 TEST_F(Obj, CornersWithTheSameNormalAreShared) {
-  const Scene scene = load(
-      kTriangle + "v 1 1 0\nvn 0 0 2\nvt 0.25 0.25\nf 1/1/1 2/1/1 3/1/1\nf 2/1/1 4//1 3/1/1\n");
+  const Scene scene =
+      load(triangleCorners +
+           "v 1 1 0\nvn 0 0 2\nvt 0.25 0.25\nf 1/1/1 2/1/1 3/1/1\nf 2/1/1 4//1 3/1/1\n");
   EXPECT_EQ(scene.vertices.size(), 4u);
   EXPECT_EQ(scene.vertices[0].uv, glm::vec2(0.25f, 0.75f)) << "v runs down";
   EXPECT_EQ(unpackNormal(scene.vertices[0].normal), glm::vec3(0, 0, 1));
@@ -68,7 +70,7 @@ TEST_F(Obj, WindowsLinesAndAMissingLastOne) {
 TEST_F(Obj, MaterialsAndTheirOpacity) {
   write("x.mtl",
         "newmtl glass\nKd 0.1 0.2 0.3\nd 0.25\nnewmtl pane\nTr 0.25\nnewmtl wall\nKd 1 0 0\n");
-  const Scene scene = load("mtllib x.mtl\n" + kTriangle +
+  const Scene scene = load("mtllib x.mtl\n" + triangleCorners +
                            "usemtl glass\nf 1 2 3\nusemtl wall\nf 1 2 3\nusemtl pane\nf 1 2 3\n");
   const auto of = [&](int i) {
     return scene.materials[scene.vertices[scene.triangles[std::size_t(i)].x].material];
@@ -88,7 +90,7 @@ TEST_F(Obj, MasksBecomeTheTexturesAlpha) {
         "newmtl leaf\nKd 0 0 0\nmap_Kd color.pgm\nmap_d mask.pgm\nnewmtl hole\nKd 1 1 1\nmap_d "
         "mask.pgm\n");
   const Scene scene =
-      load("mtllib x.mtl\n" + kTriangle + "usemtl leaf\nf 1 2 3\nusemtl hole\nf 1 2 3\n");
+      load("mtllib x.mtl\n" + triangleCorners + "usemtl leaf\nf 1 2 3\nusemtl hole\nf 1 2 3\n");
   ASSERT_EQ(scene.textures.size(), 2u);
   const auto texture = [&](const char* name) {
     for (const Material& material : scene.materials)
@@ -105,19 +107,20 @@ TEST_F(Obj, MasksBecomeTheTexturesAlpha) {
 
 TEST_F(Obj, WhatIsMissingIsCounted) {
   write("x.mtl", "newmtl a\nmap_Kd nowhere.png\nmap_d neither.png\n");
-  const Scene scene = load("mtllib gone.mtl\nmtllib x.mtl\n" + kTriangle +
+  const Scene scene = load("mtllib gone.mtl\nmtllib x.mtl\n" + triangleCorners +
                            "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nf 1 2 3\n");
   EXPECT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(repairsLike(scene, "libraries"), 1u);
   EXPECT_EQ(repairsLike(scene, "textures"), 2u);
   EXPECT_EQ(repairsLike(scene, "materials that do not exist"), 1u);
-  EXPECT_EQ(repairsLike(load("mtllib\nmtllib .\nusemtl\n" + kTriangle + "f 1 2 3\n"), "libraries"),
-            1u);
+  EXPECT_EQ(
+      repairsLike(load("mtllib\nmtllib .\nusemtl\n" + triangleCorners + "f 1 2 3\n"), "libraries"),
+      1u);
 }
 
 TEST_F(Obj, NonFiniteAndDegenerateIsDroppedAndCounted) {
   const Scene scene =
-      load(kTriangle + "v nan 0 0\nv 0 1e999 0\nvn 0 0 0\nvt inf 0\n" +
+      load(triangleCorners + "v nan 0 0\nv 0 1e999 0\nvn 0 0 0\nvt inf 0\n" +
            "f 1 2 3\nf 1 2 4\nf 5 2 3\nf 1 1 2\nf 1 2\nf 1//1 2//1 3//1\nf 1/1 2/1 3/1\n");
   EXPECT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(repairsLike(scene, "non-finite positions"), 2u);
@@ -130,12 +133,13 @@ TEST_F(Obj, NonFiniteAndDegenerateIsDroppedAndCounted) {
 TEST_F(Obj, BadIndicesNameTheirLine) {
   for (const char* face : {"f 1 2 4", "f 0 1 2", "f -4 1 2", "f a b c", "f 1 2 99999999999",
                            "f 1 2 -2147483648", "f / / /"})
-    EXPECT_THAT(failure(kTriangle + "\n# comment\n" + face + "\n"),
+    EXPECT_THAT(failure(triangleCorners + "\n# comment\n" + face + "\n"),
                 AllOf(HasSubstr("x.obj:6:"), HasSubstr("position")))
         << face;
-  EXPECT_THAT(failure(kTriangle + "f 1/1 2/1 3/1\n"), HasSubstr("texture coordinate 1"));
-  EXPECT_THAT(failure(kTriangle + "vn 0 0 1\nf 1//1 2//2 3//1\n"), HasSubstr("x.obj:5: normal 2"));
-  EXPECT_THAT(failure("f 1 2 3\n" + kTriangle), HasSubstr("x.obj:1:"));
+  EXPECT_THAT(failure(triangleCorners + "f 1/1 2/1 3/1\n"), HasSubstr("texture coordinate 1"));
+  EXPECT_THAT(failure(triangleCorners + "vn 0 0 1\nf 1//1 2//2 3//1\n"),
+              HasSubstr("x.obj:5: normal 2"));
+  EXPECT_THAT(failure("f 1 2 3\n" + triangleCorners), HasSubstr("x.obj:1:"));
 }
 
 TEST_F(Obj, BadNumbersNameTheirLine) {
@@ -146,17 +150,18 @@ TEST_F(Obj, BadNumbersNameTheirLine) {
 
 TEST_F(Obj, NothingToSeeIsAnError) {
   EXPECT_THAT(failure(""), HasSubstr("no triangles"));
-  EXPECT_THAT(failure(kTriangle), HasSubstr("3 lines"));
-  EXPECT_THAT(failure(kTriangle + "f 1 2\n"), HasSubstr("fewer than three corners skipped: 1"));
+  EXPECT_THAT(failure(triangleCorners), HasSubstr("3 lines"));
+  EXPECT_THAT(failure(triangleCorners + "f 1 2\n"),
+              HasSubstr("fewer than three corners skipped: 1"));
   EXPECT_THAT(messageOf<InputError>([&] { loadObj(folder_ / "gone.obj"); }), HasSubstr("gone.obj"));
-  std::string polygon = kTriangle + "f";
+  std::string polygon = triangleCorners + "f";
   for (int i = 0; i < 1000; ++i) polygon += " " + std::to_string(1 + i % 3);
   EXPECT_GT(load(polygon).triangles.size(), 300u) << "more corners than a byte can count";
 }
 
 TEST_F(Obj, RubbishNeverCrashes) {
   write("x.mtl", "newmtl a\nmap_Kd x.mtl\nd\nKd\nTr x\n\nnewmtl\nd 0.5");
-  const std::string good = "mtllib x.mtl\n" + kTriangle +
+  const std::string good = "mtllib x.mtl\n" + triangleCorners +
                            "vn 0 0 1\nvt 0 0\nusemtl a\ng x y\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3\n";
   Pcg32 random(6);
   const std::string characters = "vnft0123456789-/.e \n\r\t#glmo\0\xff\x80";

@@ -29,7 +29,7 @@ class SceneFiles : public TemporaryFolder {
 
   std::string gltf(const char* what, const std::string& uri) {
     GlbBuilder glb;
-    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(kTriangle)}})}});
+    glb.node({{"mesh", glb.mesh({{"POSITION", glb.positions(triangleCorners)}})}});
     glb.json["buffers"] = {{{"uri", "x.bin"}, {"byteLength", 36}}};
     if (std::string(what) == "buffer")
       glb.json["buffers"][0]["uri"] = uri;
