@@ -38,7 +38,7 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       binRows_(divideUp(target.height(), std::uint32_t(BIN_SIZE))),
       zeroFill_(device),
       project_(Pipeline::compute(device, "raster/project.comp")),
-      setup_(Pipeline::compute(device, "raster/setup.comp", {{"HAS_IRREGULAR", "0"}})),
+      setup_(Pipeline::compute(device, "raster/setup.comp", {{"HAS_UNSNAPPED", "0"}})),
       countLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "1"}})),
       offsets_(Pipeline::compute(device, "raster/bin_offsets.comp")),
       writeSmall_(Pipeline::compute(device, "raster/bin_small.comp")),
@@ -49,7 +49,7 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
   // First guesses; the first frame tells.
   makeRoomForSmall(std::min<std::uint64_t>(quadCount_, 4096));
   makeRoomForLarge(1024);
-  makeRoomForIrregular(64);
+  makeRoomForUnsnapped(64);
   makeRoomForEntries(std::uint64_t(bins()) * 4);
 }
 
@@ -108,39 +108,39 @@ void FrontEnd::makeRoomForLarge(std::uint64_t triangles) {
   large_ = Buffer(device_, memory_, "large triangles", triangles * sizeof(std::uint32_t));
 }
 
-void FrontEnd::makeRoomForIrregular(std::uint64_t triangles) {
-  irregularCapacity_ = std::uint32_t(triangles);
-  irregular_ = Buffer();
-  irregular_ =
-      Buffer(device_, memory_, "irregular triangles", triangles * sizeof(IrregularTriangle));
+void FrontEnd::makeRoomForUnsnapped(std::uint64_t triangles) {
+  unsnappedCapacity_ = std::uint32_t(triangles);
+  unsnapped_ = Buffer();
+  unsnapped_ =
+      Buffer(device_, memory_, "unsnapped triangles", triangles * sizeof(UnsnappedTriangle));
 }
 
 void FrontEnd::makeRoomForEntries(std::uint64_t entries) {
   entries_ = Buffer();
-  parts_ = Buffer();
+  segments_ = Buffer();
   entries_ = Buffer(device_, memory_, "bin entries", entries * 4);
   entryCapacity_ = std::uint32_t(entries);
-  parts_ = Buffer(device_, memory_, "parts of bins",
-                  (std::uint64_t(bins()) + partCapacity()) * sizeof(Part));
+  segments_ = Buffer(device_, memory_, "segments of bins",
+                     (std::uint64_t(bins()) + segmentCapacity()) * sizeof(Segment));
 }
 
 RasterPush FrontEnd::addresses(const Frame& frame) const {
   return {.mesh = {.quads = quads_.address(),
                    .vertices = vertices_,
                    .onScreen = onScreen_.address(),
-                   .irregular = irregular_.address()},
+                   .unsnapped = unsnapped_.address()},
           .frame = frame.constants,
           .smallQuads = smallQuads_.address(),
           .large = large_.address(),
           .bins = bins_.address(),
           .entries = entries_.address(),
-          .parts = parts_.address(),
+          .segments = segments_.address(),
           .counters = counters_.address(),
           .quadCount = quadCount_,
           .vertexCount = vertexCount_,
           .smallCapacity = smallCapacity_,
           .largeCapacity = largeCapacity_,
-          .irregularCapacity = irregularCapacity_,
+          .unsnappedCapacity = unsnappedCapacity_,
           .entryCapacity = entryCapacity_,
           // Enough to fill a large GPU, and quick to start for nothing; a CPU takes 3 us for each.
           .largeGroups = device_.info().isCpu() ? 64u : 1024u,
@@ -181,25 +181,25 @@ void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> a
   });
 }
 
-std::uint32_t FrontEnd::partCapacity() const {
+std::uint32_t FrontEnd::segmentCapacity() const {
   // A small quad is one entry and two triangles; each high bin rounds up.
-  return 2 * (entryCapacity_ / PART_TRIANGLES + 1) + bins();
+  return 2 * (entryCapacity_ / SEGMENT_TRIANGLES + 1) + bins();
 }
 
 bool FrontEnd::grow() {
   const RasterCounters& c = counted();
   bool lacked = false;
-  if (c.irregularSeen != 0) {
-    irregularSeen_ = lacked = true;
-    setup_ = Pipeline::compute(device_, "raster/setup.comp", {{"HAS_IRREGULAR", "1"}});
+  if (c.unsnappedSeen != 0) {
+    unsnappedSeen_ = lacked = true;
+    setup_ = Pipeline::compute(device_, "raster/setup.comp", {{"HAS_UNSNAPPED", "1"}});
   }
   if (c.largeTriangles > 0 && !largeSeen_) largeSeen_ = lacked = true;
   if (c.ready != 0) return lacked;
   if (c.smallQuads > smallCapacity_)
     makeRoomForSmall(std::min<std::uint64_t>(roomFor(c.smallQuads), quadCount_));
   if (c.largeTriangles > largeCapacity_) makeRoomForLarge(roomFor(c.largeTriangles));
-  if (c.irregularTriangles > irregularCapacity_)
-    makeRoomForIrregular(roomFor(c.irregularTriangles));
+  if (c.unsnappedTriangles > unsnappedCapacity_)
+    makeRoomForUnsnapped(roomFor(c.unsnappedTriangles));
   if (c.entries > entryCapacity_) makeRoomForEntries(roomFor(c.entries));
   return true;
 }
@@ -213,7 +213,7 @@ void FrontEnd::addCounters(std::map<std::string, std::uint64_t>& counters) const
   counters["visible_degenerate_quads"] = c.visibleDegenerate;
   counters["small_quads"] = c.smallQuads;
   counters["large_quads"] = c.largeQuads;
-  counters["irregular_triangles"] = c.irregularTriangles;
+  counters["unsnapped_triangles"] = c.unsnappedTriangles;
   if (options_.backFaceCulling) counters["culled_backface_quads"] = c.culledBackFacing;
   counters["bins_empty"] = c.emptyBins;
   counters["bins_low"] = c.lowBins;
@@ -222,8 +222,8 @@ void FrontEnd::addCounters(std::map<std::string, std::uint64_t>& counters) const
 }
 
 void FrontEnd::poison(const Commands& commands, std::uint32_t pattern) const {
-  for (const Buffer* buffer : {&onScreen_, &irregular_, &smallQuads_, &large_, &bins_, &entries_,
-                               &parts_, &counters_.buffer()})
+  for (const Buffer* buffer : {&onScreen_, &unsnapped_, &smallQuads_, &large_, &bins_, &entries_,
+                               &segments_, &counters_.buffer()})
     fillBuffer(commands, *buffer, pattern);
 }
 

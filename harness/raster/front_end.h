@@ -14,7 +14,7 @@ namespace oitlab::raster {
 /// The first two stages of a compute rasterizer after LucidRaster (Jakubowski 2024, section 2):
 /// quad setup and binning. From the scene's transparent triangles it leaves, for one camera, the
 /// vertices on the screen, and for each 32 x 32 bin the list of its primitives. What rasterization
-/// and shading need of a triangle shaders work out from these (shaders/raster/records.glsl). It
+/// and shading need of a triangle shaders work out from these (shaders/raster/triangles.glsl). It
 /// knows nothing of blending: what becomes of the fragments is the method's.
 ///
 /// Memory follows the scene: buffers grow by what was counted, and the frame is recorded again.
@@ -53,10 +53,10 @@ class FrontEnd {
   std::uint32_t inputQuads() const { return quadCount_; }
 
   /// Some frame has had triangles that cannot be snapped.
-  bool hasIrregular() const { return irregularSeen_; }
+  bool hasUnsnapped() const { return unsnappedSeen_; }
 
   /// Parts of high bins that there is room for: valid until grow().
-  std::uint32_t partCapacity() const;
+  std::uint32_t segmentCapacity() const;
 
   /// For tests: fills everything that a frame must write before it reads with `pattern`.
   void poison(const Commands& commands, std::uint32_t pattern) const;
@@ -65,7 +65,7 @@ class FrontEnd {
   void makeQuads(const GpuScene& scene);
   void makeRoomForSmall(std::uint64_t quads);
   void makeRoomForLarge(std::uint64_t triangles);
-  void makeRoomForIrregular(std::uint64_t triangles);
+  void makeRoomForUnsnapped(std::uint64_t triangles);
   void makeRoomForEntries(std::uint64_t entries);
 
   const Device& device_;
@@ -74,13 +74,13 @@ class FrontEnd {
   std::uint32_t quadCount_ = 0, degenerateQuads_ = 0, vertexCount_ = 0;
   std::uint64_t vertices_ = 0;  // address of the first that a quad has
   std::uint32_t binColumns_, binRows_;
-  std::uint32_t smallCapacity_ = 0, largeCapacity_ = 0, irregularCapacity_ = 0, entryCapacity_ = 0;
+  std::uint32_t smallCapacity_ = 0, largeCapacity_ = 0, unsnappedCapacity_ = 0, entryCapacity_ = 0;
   // What these need is recorded from the first that is seen.
-  bool largeSeen_ = false, irregularSeen_ = false;
+  bool largeSeen_ = false, unsnappedSeen_ = false;
   ZeroFill zeroFill_;
   Pipeline project_, setup_, countLarge_, offsets_, writeSmall_, writeLarge_;
-  Buffer quads_, onScreen_, irregular_, smallQuads_, large_;
-  Buffer bins_, entries_, parts_;
+  Buffer quads_, onScreen_, unsnapped_, smallQuads_, large_;
+  Buffer bins_, entries_, segments_;
   CountersBuffer counters_;
 };
 

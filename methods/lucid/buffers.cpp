@@ -18,22 +18,22 @@ Buffers::Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfB
   makeRoomForRepairs(1024);
 }
 
-void Buffers::makeRoomForParts(std::uint64_t parts) {
-  partLists = Buffer();
-  partLists = Buffer(device_, memory_, "lists of parts", parts * sizeof(PartLists));
+void Buffers::makeRoomForSegments(std::uint64_t segments) {
+  segmentLists = Buffer();
+  segmentLists = Buffer(device_, memory_, "lists of segments", segments * sizeof(SegmentLists));
 }
 
-void Buffers::makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t kept) {
+void Buffers::makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t cached) {
   if (triHalfBlocks >= ~0u)
     fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", triHalfBlocks);
   triHalfBlocks += triHalfBlocks % 2;
   list = Buffer();  // give the old ones back first: both may not fit
   keys = Buffer();
   list = Buffer(device_, memory_, "tri-half-blocks",
-                triHalfBlocks * sizeof(TriHalfBlock) + kept * sizeof(glm::uvec4));
+                triHalfBlocks * sizeof(TriHalfBlock) + cached * sizeof(glm::uvec4));
   keys = Buffer(device_, memory_, "depth keys", triHalfBlocks * sizeof(std::uint32_t));
   listCapacity = std::uint32_t(triHalfBlocks);
-  keptCapacity = std::uint32_t(kept);
+  cachedCapacity = std::uint32_t(cached);
 }
 
 void Buffers::makeRoomForRepairs(std::uint64_t jobs) {
@@ -56,14 +56,14 @@ void Buffers::makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments) {
 
 std::uint64_t Buffers::scratchBytes() const {
   std::uint64_t bytes = 0;
-  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &partLists})
+  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &segmentLists})
     bytes += buffer->bytes();
   return bytes;
 }
 
 void Buffers::poison(const Commands& commands, std::uint32_t pattern) const {
-  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &partLists, &repairs,
-                               &counters.buffer(), &deepPixels, &nodes})
+  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &segmentLists,
+                               &repairs, &counters.buffer(), &deepPixels, &nodes})
     if (*buffer) fillBuffer(commands, *buffer, pattern);
 }
 

@@ -12,9 +12,9 @@ struct Buffers {
   /// `memory` must outlive this and lists the buffers. `halfBlocks`: of the frame.
   Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfBlocks);
 
-  void makeRoomForParts(std::uint64_t parts);
-  /// `kept`: those of high bins.
-  void makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t kept);
+  void makeRoomForSegments(std::uint64_t segments);
+  /// `cached`: those of high bins.
+  void makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t cached);
   void makeRoomForRepairs(std::uint64_t jobs);
   void makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments);
 
@@ -24,10 +24,10 @@ struct Buffers {
   /// Fills everything that a frame must write before it reads, for a test that it does.
   void poison(const Commands& commands, std::uint32_t pattern) const;
 
-  Buffer list, keys, blocks, filterJobs, binBlocks, partLists, repairs;
+  Buffer list, keys, blocks, filterJobs, binBlocks, segmentLists, repairs;
   Buffer deepPixels, nodes;
   CountersBuffer counters;
-  std::uint32_t listCapacity = 0, keptCapacity = 0, repairCapacity = 0, deepCapacity = 0,
+  std::uint32_t listCapacity = 0, cachedCapacity = 0, repairCapacity = 0, deepCapacity = 0,
                 nodeCapacity = 0;
 
  private:

@@ -4,7 +4,7 @@
 // blended again in exact order.
 //
 //   programs  the shaders, for one device and scene
-//   buffers   what is kept between their steps
+//   buffers   what lies between their steps
 #include "lucid/lucid_types.h"
 
 #include "lucid/buffers.h"
@@ -40,7 +40,7 @@ class Lucid : public Method {
                   {.backFaceCulling = parameters_.flag("backface_culling")}),
         buffers_(device_, context.memory, std::uint64_t(frontEnd_.bins()) * HALF_BLOCKS),
         programs_(makePrograms(false)) {
-    makeRoomForParts();
+    makeRoomForSegments();
   }
 
   bool finishesTarget() const override { return true; }
@@ -55,8 +55,8 @@ class Lucid : public Method {
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
       dispatchCounted(frame, pipeline, push, buffers_.counters.vk(), offset);
     };
-    // Within a step no barrier parts the programs: their half-blocks are different ones. Long lists
-    // come first, since the last to end holds up the frame.
+    // The programs of one step need no barrier between them: they work on different half-blocks.
+    // Long lists come first, since the frame waits for the last job to end.
     const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
     frame.stage("sort", [&] {
       if (needed_.longLists) run(*programs_.sortHigh, high);
@@ -81,14 +81,14 @@ class Lucid : public Method {
     const LucidCounters& c = buffers_.counters.read<LucidCounters>();
     bool again = findNeeded(c);
     if (frontEnd_.grow()) {
-      makeRoomForParts();
-      if (frontEnd_.hasIrregular() && !programs_.irregular) programs_ = makePrograms(true);
+      makeRoomForSegments();
+      if (frontEnd_.hasUnsnapped() && !programs_.unsnapped) programs_ = makePrograms(true);
       return {.recordAgain = true};
     }
-    if (c.triHalfBlocks > buffers_.listCapacity || c.kept > buffers_.keptCapacity) {
-      const std::uint64_t list = buffers_.listCapacity, kept = buffers_.keptCapacity;
+    if (c.triHalfBlocks > buffers_.listCapacity || c.cached > buffers_.cachedCapacity) {
+      const std::uint64_t list = buffers_.listCapacity, cached = buffers_.cachedCapacity;
       buffers_.makeRoomForLists(c.triHalfBlocks > list ? withSlack(c.triHalfBlocks) : list,
-                                c.kept > kept ? withSlack(c.kept) : kept);
+                                c.cached > cached ? withSlack(c.cached) : cached);
       return {.recordAgain = true};
     }
     if (c.repairJobs > buffers_.repairCapacity) {
@@ -129,9 +129,9 @@ class Lucid : public Method {
   }
 
  private:
-  Programs makePrograms(bool hasIrregular) const {
+  Programs makePrograms(bool hasUnsnapped) const {
     return {device_,      scene_.scene(), scene_.opaqueCount() > 0,
-            hasIrregular, targetFormat_,  parameters_};
+            hasUnsnapped, targetFormat_,  parameters_};
   }
 
   // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
@@ -144,7 +144,7 @@ class Lucid : public Method {
   // Whether the last frame lacked a pass.
   bool findNeeded(const LucidCounters& c) {
     const Needed before = needed_;
-    needed_.highBins = needed_.highBins || frontEnd_.counted().highParts > 0;
+    needed_.highBins = needed_.highBins || frontEnd_.counted().highSegments > 0;
     needed_.longLists = needed_.longLists || c.highLists > 0;
     needed_.filter = needed_.filter || c.lowLists + c.passedJobs > 0;
     needed_.repair = needed_.repair || c.repairJobs > 0;
@@ -160,25 +160,25 @@ class Lucid : public Method {
     const BlocksPush push{.mesh = front.mesh,
                           .frame = front.frame,
                           .entries = front.entries,
-                          .parts = front.parts,
+                          .segments = front.segments,
                           .rasterCounters = front.counters,
                           .list = buffers_.list.address(),
                           .keys = buffers_.keys.address(),
                           .blocks = buffers_.blocks.address(),
                           .filterJobs = buffers_.filterJobs.address(),
                           .binBlocks = buffers_.binBlocks.address(),
-                          .partLists = buffers_.partLists.address(),
+                          .segmentLists = buffers_.segmentLists.address(),
                           .counters = buffers_.counters.address(),
                           .listCapacity = buffers_.listCapacity,
-                          .keptCapacity = buffers_.keptCapacity};
-    auto run = [&](std::size_t pass, std::size_t offset) {
-      dispatchCounted(frame, *programs_.blocks[pass], push, frontEnd_.counters().vk(), offset);
+                          .cachedCapacity = buffers_.cachedCapacity};
+    auto run = [&](const Program& program, std::size_t offset) {
+      dispatchCounted(frame, *program, push, frontEnd_.counters().vk(), offset);
     };
-    if (needed_.highBins) run(1, offsetof(RasterCounters, high));
-    run(0, offsetof(RasterCounters, low));
+    if (needed_.highBins) run(programs_.countHigh, offsetof(RasterCounters, high));
+    run(programs_.countAndWriteLow, offsetof(RasterCounters, low));
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     if (!needed_.highBins) return;
-    run(2, offsetof(RasterCounters, high));
+    run(programs_.writeHigh, offsetof(RasterCounters, high));
     frame.barrier(compute, compute);
   }
 
@@ -233,7 +233,7 @@ class Lucid : public Method {
     }
   }
 
-  void makeRoomForParts() { buffers_.makeRoomForParts(frontEnd_.partCapacity()); }
+  void makeRoomForSegments() { buffers_.makeRoomForSegments(frontEnd_.segmentCapacity()); }
 
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;

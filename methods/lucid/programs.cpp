@@ -49,9 +49,9 @@ Defines teamDefines(const Device& device) {
           {"UNIFORM_CONTROL_FLOW", device.hasSubgroupUniformControlFlow() ? "1" : "0"}};
 }
 
-Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
+Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasUnsnapped,
                    const std::string& targetFormat, const Parameters& parameters)
-    : irregular(hasIrregular) {
+    : unsnapped(hasUnsnapped) {
   const bool isWide = device.info().subgroupSize >= 32;
   ordersFirst = parameters.flag("ordered_first");
   // Half-blocks that a workgroup works on side by side. They wait for each other, but each
@@ -73,7 +73,7 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
   const Defines common =
       with(team, {{"TARGET_FORMAT", targetFormat},
                   {"HAS_OPAQUE", hasOpaque ? "1" : "0"},
-                  {"HAS_IRREGULAR", hasIrregular ? "1" : "0"},
+                  {"HAS_UNSNAPPED", hasUnsnapped ? "1" : "0"},
                   {"HAS_TEXTURES", hasTextures(scene) ? "1" : "0"},
                   {"HAS_GRADIENTS", hasGradients(scene) ? "1" : "0"},
                   {"HAS_ATTRIBUTES", hasAttributes(scene) ? "1" : "0"},
@@ -103,16 +103,20 @@ Programs::Programs(const Device& device, const Scene& scene, bool hasOpaque, boo
                                {"TEAMS", teams}}),
                    lanes);
   };
-  // A workgroup a part of a bin. On a CPU a large one is no faster.
+  // One workgroup per segment of a bin. On a CPU a large one is no faster.
   const char* group = isWide ? "256u" : "64u";
-  for (std::size_t pass = 0; pass < blocks.size(); ++pass)
-    blocks[pass] = program(
+  auto blocks = [&](const char* pass) {
+    return program(
         "lucid/blocks.comp",
-        with(only({"HAS_IRREGULAR"}), {{"PASS", std::to_string(pass)},
+        with(only({"HAS_UNSNAPPED"}), {{"PASS", pass},
                                        {"LOW_TEAMS", lowTeams},
                                        {"ORDERED_TEAMS", orderedTeams},
                                        {"GROUP", group},
                                        {"FIRST_LIST", ordersFirst ? "ORDERED_LIST" : "0u"}}));
+  };
+  countHigh = blocks("COUNT_HIGH");
+  countAndWriteLow = blocks("COUNT_AND_WRITE_LOW");
+  writeHigh = blocks("WRITE_HIGH");
   const std::int64_t filter = parameters.integer("depth_filter");
   ordered = raster("ordered", orderedTeams, 1);
   lowRaster = raster("low", lowTeams, filter);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,7 +10,7 @@
 
 namespace oitlab::lucid {
 
-/// llvmpipe ends long loops early and in silence: there the turns are counted.
+/// llvmpipe ends long loops early without an error. On it, shaders count their iterations.
 bool verifiesLoops(const Device& device);
 
 /// The macros that lucid/team.glsl needs, for this device.
@@ -35,20 +34,20 @@ class Program {
   mutable std::optional<Pipeline> pipeline_;
 };
 
-/// The programs of shaders/lucid for one device, scene and set of parameters. What the scene has
-/// not is not in them.
+/// The programs of shaders/lucid for one device, scene and set of parameters. They leave
+/// out the code for what the scene does not have.
 struct Programs {
-  /// `hasOpaque`: the scene has opaque triangles. `hasIrregular`: frames have triangles that cannot
+  /// `hasOpaque`: the scene has opaque triangles. `hasUnsnapped`: frames have triangles that cannot
   /// be snapped. `device` must outlive this.
-  Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasIrregular,
+  Programs(const Device& device, const Scene& scene, bool hasOpaque, bool hasUnsnapped,
            const std::string& targetFormat, const Parameters& parameters);
 
-  bool irregular = false;
+  bool unsnapped = false;
 
   /// Short lists are blended with a depth filter of 1 first.
   bool ordersFirst = false;
 
-  std::array<Program, 3> blocks;  ///< by PASS of blocks.comp
+  Program countHigh, countAndWriteLow, writeHigh;  ///< the passes of blocks.comp
   Program ordered, sortLow, sortHigh, lowRaster, highRaster;
   Program repair, deepCapture, deepResolve;
 };

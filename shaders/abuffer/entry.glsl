@@ -54,7 +54,7 @@ vec4 colorOf(Entry entry) {
 }
 
 // The order of isInFront(); ids are fetched only for equal depths, which are rare.
-bool isBefore(Entry a, Entry b) {
+bool isInFront(Entry a, Entry b) {
   if (a.depth != b.depth || a.depth < 0.0) return a.depth > b.depth;
   return isInFront(a.depth, push.nodes.at[nodeOf(a)].id, b.depth, push.nodes.at[nodeOf(b)].id);
 }

@@ -18,7 +18,7 @@ Entry fragments[MAX_FRAGMENTS];
 // The inner loop is written out sixteenfold: n * n / 2 steps of a thousand fragments are more
 // iterations than llvmpipe allows an invocation (65,535), a sixteenth of them are not.
 #define STEP                                                       \
-  if (hole == 0u || !isBefore(entry, fragments[hole - 1u])) break; \
+  if (hole == 0u || !isInFront(entry, fragments[hole - 1u])) break; \
   fragments[hole] = fragments[hole - 1u];                          \
   --hole;
 #define STEPS STEP STEP STEP STEP
@@ -41,7 +41,7 @@ void sortByShell(uint count) {
     for (uint i = gap; i < count; ++i) {
       const Entry entry = fragments[i];
       uint hole = i;
-      for (; hole >= gap && isBefore(entry, fragments[hole - gap]); hole -= gap)
+      for (; hole >= gap && isInFront(entry, fragments[hole - gap]); hole -= gap)
         fragments[hole] = fragments[hole - gap];
       fragments[hole] = entry;
     }
@@ -58,10 +58,10 @@ void sortByMerging(uint count) {
     for (uint begin = 0u; begin + run < count; begin += 2u * run) {
       const uint end = min(begin + 2u * run, count);
       uint a = 0u, b = begin + run, to = begin;
-      if (!isBefore(fragments[b], fragments[b - 1u])) continue;  // in order already
+      if (!isInFront(fragments[b], fragments[b - 1u])) continue;  // in order already
       for (uint i = 0u; i < run; ++i) left[i] = fragments[begin + i];
       while (a < run) {
-        if (b < end && isBefore(fragments[b], left[a])) fragments[to++] = fragments[b++];
+        if (b < end && isInFront(fragments[b], left[a])) fragments[to++] = fragments[b++];
         else fragments[to++] = left[a++];
       }
     }
@@ -80,7 +80,7 @@ void sortBitonic(uint count) {
         const uint a = 2u * i - (i & (distance - 1u)), b = a + distance;
         const bool ascending = (a & run) == 0u;
         const Entry first = fragments[a], second = fragments[b];
-        if (ascending ? isBefore(second, first) : isBefore(first, second)) {
+        if (ascending ? isInFront(second, first) : isInFront(first, second)) {
           fragments[a] = second;
           fragments[b] = first;
         }

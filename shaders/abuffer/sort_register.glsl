@@ -19,7 +19,7 @@
 // Batcher's odd-even merge sort as a network: indices are constants, so that the block is never in
 // memory. Loops would leave it to the compiler to find that out.
 #define S(a, b)                       \
-  if (isBefore(block[b], block[a])) { \
+  if (isInFront(block[b], block[a])) { \
     const Entry moved = block[a];     \
     block[a] = block[b];              \
     block[b] = moved;                 \
@@ -90,7 +90,7 @@ vec4 sortAndBlend(uint count) {
     Entry front = chains[0];
     for (uint chain = 1u; chain < chainCount; ++chain) {
       const Entry other = chains[chain];
-      if (isBefore(other, front)) {
+      if (isInFront(other, front)) {
         front = other;
         best = chain;
       }

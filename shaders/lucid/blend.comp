@@ -1,14 +1,14 @@
 #version 460
-// Stage 3, phase 3 (shading and blending): a subgroup (a "team") a half-block. Three programs:
-//   ordered  ORDERED, LIST = ORDERED_LIST: short lists, which are sorted here. Most pixels' fragments come
-//            nearly in the order of the sorted triangles, so that a depth filter of 1 will do; pixels in
-//            which it does not are passed on,
-//   low      these pixels, and half-blocks of longer lists, with the depth filter,
-//   high     HIGH, half-blocks of yet longer lists, with the depth filter.
-// The latter two find their lists sorted (sort_lists.comp).
+// Stage 3, phase 3 (shading and blending): one subgroup (a "team") per half-block. Three programs:
+//   ordered  ORDERED, LIST = ORDERED_LIST: short lists, which are sorted here. In most pixels the fragments arrive
+//            nearly in the order of the sorted triangles, so that a depth filter of 1 is enough. The other pixels
+//            are passed on to low.
+//   low      these pixels, and half-blocks with longer lists, with the depth filter.
+//   high     HIGH: half-blocks with even longer lists, with the depth filter.
+// Low and high read lists that sort_lists.comp has sorted.
 //
-// Each lane owns a pixel, or in a subgroup of less than 32 lanes several; of one of 64 half the lanes own
-// none.
+// Each lane owns one pixel. In subgroups of fewer than 32 lanes it owns several; in subgroups of 64 lanes half of
+// the lanes own none.
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
@@ -19,18 +19,18 @@ layout(push_constant, scalar) uniform Push { BlendPush push; };
 #if ORDERED
 #include "lucid/short_list.glsl"
 #else
-// In the list, of the i-th tri-half-block from the front.
+// Place in the list of the i-th tri-half-block from the front.
 uint placeOf(HalfBlock block, uint i) { return push.keys.at[block.first + i]; }
 #endif
 
-// A workgroup a job, up to a number that every device can dispatch; these then take several.
+// One workgroup per job, up to the number that every device can dispatch. Beyond that, workgroups take several jobs.
 void addRepair(HalfBlock block, uint pixels) {
   const uint job = atomicAdd(push.counters.c.repairJobs, 1u);
   if (job < MAX_GROUPS) atomicAdd(push.counters.c.repair.x, 1u);
   if (job < push.repairCapacity) push.repairs.at[job] = PixelJob(block, pixels);
 }
 
-// Long lists by rows: llvmpipe ends loops after 65,535 turns, and a GPU shares the work out better.
+// Long lists are repaired row by row: llvmpipe ends loops after 65,535 iterations, and GPUs balance the work better.
 void repair(HalfBlock block, uint pixels) {
   atomicAdd(push.counters.c.pixelsToRepair, bitCount(pixels));
   if (block.count <= ROW_REPAIR) {
@@ -43,7 +43,7 @@ void repair(HalfBlock block, uint pixels) {
   }
 }
 
-// To low raster, one workgroup for LOW_TEAMS jobs.
+// Passes pixels on to low raster, which has one workgroup per LOW_TEAMS jobs.
 void passOn(HalfBlock block, uint pixels) {
   const uint job = push.counters.c.lowLists + atomicAdd(push.counters.c.passedJobs, 1u);
   push.filterJobs.at[job] = PixelJob(block, pixels);
@@ -53,16 +53,16 @@ void passOn(HalfBlock block, uint pixels) {
   atomicMax(push.counters.c.low.x, min(job / LOW_TEAMS + 1u, MAX_GROUPS));
 }
 
-void countSamples(uint samples, uint turns) {
+void countSamples(uint samples, uint iterations) {
   const uint all = (push.flags & COUNT_SAMPLES) != 0u ? subgroupAdd(samples) : 0u;
   if (gl_SubgroupInvocationID != 0u) return;
   if (all > 0u) atomicAdd(push.counters.c.samples, all);
 #if VERIFY_LOOPS
-  atomicAdd(push.counters.c.blended, turns);
+  atomicAdd(push.counters.c.blended, iterations);
 #endif
 }
 
-// Blends those pixels of the half-block that `owned` has. Returns the lane's pixels whose order went wrong.
+// Blends the pixels of the half-block that are set in `owned`. Returns the lane's pixels whose order was wrong.
 uint sweep(HalfBlock block, ivec2 corner, uint owned) {
   const uint lane = gl_SubgroupInvocationID, team = gl_SubgroupID;
   const uint own = lane < OWNERS ? owned : 0u;
@@ -75,7 +75,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
     if (lane < OWNERS) samplesOf[32u * team + bit] = 0u;
   }
 
-  uint covered = 0u, turns = 0u;
+  uint covered = 0u, iterations = 0u;
   for (uint first = 0u; first < block.count; first += SUBGROUP_SIZE) {
     TriHalfBlock item = TriHalfBlock(0u, 0u);
     if (first + lane < block.count) {
@@ -84,20 +84,20 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
     }
     covered |= item.mask;
     Batch b = makeBatch(item.triangle, item.mask);
-    turns += min(SUBGROUP_SIZE, block.count - first) - b.size;
+    iterations += min(SUBGROUP_SIZE, block.count - first) - b.size;
 
-    // Where triangles cover a good part of the pixels, each lane shades its own; where they are small,
-    // lanes take samples as they come and hand them to the pixels they fall on, which costs four times
-    // as much a sample. In a small subgroup the lanes' several pixels share what is prepared, and the
-    // first way is always the quicker: llvmpipe, moreover, goes through code that no lane takes.
+    // Where triangles cover many of the pixels, each lane shades its own pixel. Where they are small, lanes take
+    // samples one after the other and hand them to the pixels that they fall on, which costs four times as much
+    // per sample. In small subgroups, where a prepared triangle serves several pixels per lane, the first way is
+    // always faster, and llvmpipe executes both sides of a branch even if no lane takes one of them.
     if (SMALL_SUBGROUP == 1 || 4u * b.samples >= OWNERS * b.size) {
 #if INTERPOLATES == 0
-      // All at once. Where more is prepared, the registers to keep it in cost more than that gains.
+      // Prepared once for all portions. With interpolation this would take more registers than it saves time.
       Prepared ready;
       if (item.mask != 0u) ready = prepare(item.triangle, corner);
 #endif
-      for (uint part = 0u; part < b.size; part += PREPARED_COUNT) {
-        const uint mine = b.place - b.at - part;  // wraps where it is of an earlier part
+      for (uint portion = 0u; portion < b.size; portion += PREPARED_COUNT) {
+        const uint mine = b.place - b.at - portion;  // wraps around for an earlier portion
         if (item.mask != 0u && mine < PREPARED_COUNT) {
 #if INTERPOLATES
           const Prepared ready = prepare(item.triangle, corner);
@@ -105,21 +105,21 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
           storePrepared(team * PREPARED_COUNT + mine, ready);
         }
         teamBarrier();
-        const uint here = min(b.size - part, PREPARED_COUNT);
-        turns += here;
+        const uint here = min(b.size - portion, PREPARED_COUNT);
+        iterations += here;
         EACH_GROUP for (uint g = 0u; g < GROUPS; ++g) {
           Pixel p = pixels[g];
-          blendPrepared(p, own, bitOf(g), opaque[g], b.at + part, here);
+          blendPrepared(p, own, bitOf(g), opaque[g], b.at + portion, here);
           pixels[g] = p;
         }
         teamBarrier();
       }
     } else {
       const uint full = HAS_THRESHOLD == 1 ? subgroupOr(isFull(pixels[0]) ? own & 1u << bitOf(0u) : 0u) : 0u;
-      turns += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that every batch counts its length
+      iterations += b.size - (b.samples + OWNERS - 1u) / OWNERS;  // so that each batch counts its full length
       teamBarrier();
       for (uint chunk = 0u; chunk < b.samples; chunk += OWNERS) {
-        ++turns;
+        ++iterations;
         const uvec2 hit = sampleOf(b, chunk);
         if (lane < OWNERS && chunk + lane < b.samples) {
           const vec2 hitPixel = vec2(pixelOf(hit.y));
@@ -158,7 +158,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
 #endif
     if (composes) imageStore(target, place, overOpaque(p.accumulated, imageLoad(target, place)));
   }
-  countSamples(samples, turns);
+  countSamples(samples, iterations);
   return invalid;
 }
 
@@ -181,8 +181,7 @@ void blendHalfBlock(HalfBlock block, uint pixels) {
   }
 }
 
-// A list that is too long to sort here: each of its pixels is a job of its own for repair.comp,
-// which needs no order.
+// For a list that is too long to be sorted: each of its pixels becomes a job for repair.comp, which needs no order.
 void handOver(HalfBlock block) {
   uint covered = 0u;
   for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
@@ -217,7 +216,7 @@ TEAM_MAIN void main() {
     teamBarrier();
   }
 #elif ORDERED
-  // One turn a workgroup: which is next is left to the device, where the paper has persistent threads.
+  // One half-block per team. The device schedules the workgroups, where the paper has persistent threads.
   if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
 #else

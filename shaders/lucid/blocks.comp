@@ -1,32 +1,31 @@
 #version 460
-// Stage 3, phases 1 and 2 up to the sort: the list of tri-half-blocks of every half-block. A workgroup
-// a part of a bin. The paper goes from block-rows to blocks to half-blocks through scratch memory; here
-// rows of pixels become half-block masks at once, in shared memory, and go into lists of just the right
-// size.
+// Stage 3, phases 1 and 2 up to the sort: makes the list of tri-half-blocks of every half-block. One workgroup
+// per segment of a bin. The paper goes from block rows to blocks to half-blocks through scratch memory. Here,
+// rows of pixels become half-block masks directly in shared memory, and lists are allocated at their exact size.
 //
 // FIRST_LIST: ORDERED_LIST, or 0 where all lists go through the depth filter.
 //
-// PASS 0: bins of one part: counts and writes. PASS 1: counts bins of several parts, the last of which
-// makes room for all. PASS 2: writes these, from what PASS 1 kept.
+// PASS: COUNT_AND_WRITE_LOW counts and writes bins of one segment. COUNT_HIGH counts bins of several segments;
+// the last workgroup of a bin allocates its lists. WRITE_HIGH writes them, from what COUNT_HIGH cached.
 #include "lucid/lucid_types.h"
 #include "lucid/sort_key.glsl"
 
 layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
 
-#include "lucid/strips.glsl"
+#include "lucid/half_block_rows.glsl"
 
-// What of a part fits is kept from counting to writing; what does not is rasterized again. Parts have
-// some 360 in a hairball, more in others: more room would serve a few, and cost all of them the shared
-// memory (docs/performance.md).
-#define KEPT 512u
-shared uint keptMasks[KEPT];
-shared uint keptPlaces[KEPT];  // half-block, triangle of the part, place in the half-block's list
-#define TRIANGLE_SHIFT 5  // above the half-block: PART_TRIANGLES
+// The tri-half-blocks of a segment are cached from counting to writing. A segment that has more is rasterized
+// again. In the hairball a segment has about 360, in other scenes some have more. A larger cache would help few
+// segments and take shared memory from all of them (docs/performance_log.md).
+#define CACHE_SIZE 512u
+shared uint cachedMasks[CACHE_SIZE];
+shared uint cachedPlaces[CACHE_SIZE];  // half-block, triangle of the segment, place in the half-block's list
+#define TRIANGLE_SHIFT 5  // the half-block lies below; 8 bits, for SEGMENT_TRIANGLES
 #define PLACE_SHIFT 13
 
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
-shared uint kept, keptFirst, base, total;
+shared uint cached, cachedFirst, base, total;
 shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh;
 shared uint last;
 
@@ -44,66 +43,68 @@ void writeItem(uint slot, uint mask, uint key, uint block, uint place) {
   push.keys.at[starts[block] + place] = key;
 }
 
-// `number`: of the triangle in its part.
-void takeStrip(bool write, Span span, uint slot, uint number, int strip, uvec4 masks) {
-#if PASS != 2
+// `number`: index of the triangle in its segment.
+void takeHalfBlockRow(bool write, Span span, uint slot, uint number, int halfBlockRow, uvec4 masks) {
+#if PASS != WRITE_HIGH
   uint k = 0u;
-  if (!write) k = atomicAdd(kept, uint(dot(vec4(notEqual(masks, uvec4(0u))), vec4(1.0))));
+  if (!write) k = atomicAdd(cached, uint(dot(vec4(notEqual(masks, uvec4(0u))), vec4(1.0))));
 #endif
   [[unroll]] for (uint c = 0u; c < HALF_BLOCKS_ACROSS; ++c) {
     if (masks[c] == 0u) continue;
-    const uint block = uint(strip) * HALF_BLOCKS_ACROSS + c;
+    const uint block = uint(halfBlockRow) * HALF_BLOCKS_ACROSS + c;
     if (write) {
       writeItem(slot, masks[c], keyOf(span.region, slot, masks[c], block), block, atomicAdd(cursors[block], 1u));
       continue;
     }
-#if PASS != 2
+#if PASS != WRITE_HIGH
     const uint place = atomicAdd(counts[block], 1u);
-    if (k < KEPT) {
-      keptMasks[k] = masks[c];
-      keptPlaces[k] = block | number << TRIANGLE_SHIFT | place << PLACE_SHIFT;
+    if (k < CACHE_SIZE) {
+      cachedMasks[k] = masks[c];
+      cachedPlaces[k] = block | number << TRIANGLE_SHIFT | place << PLACE_SHIFT;
     }
     ++k;
 #endif
   }
 }
 
-// Strips are shared out evenly, however tall the triangles: lanes of a subgroup wait for each other.
+// All invocations get the same number of half-block rows, however tall the triangles are, because the lanes of a
+// subgroup wait for each other.
 void walk(bool write, Span span) {
-  for (uint i = gl_LocalInvocationIndex; i < strips; i += GROUP) {
+  for (uint i = gl_LocalInvocationIndex; i < halfBlockRows; i += GROUP) {
     const uint number = triangleOf(i), slot = slots[number], begin = begins[number];
-    const int strip = int(bitfieldExtract(begin, 0, STRIP_BITS) + i - (begin >> BEGIN_SHIFT));
-    takeStrip(write, span, slot, number, strip, coverStrip(span, strip, slot, (begin & TURNED) != 0u));
+    const int halfBlockRow = int(bitfieldExtract(begin, 0, ROW_BITS) + i - (begin >> BEGIN_SHIFT));
+    takeHalfBlockRow(write, span, slot, number, halfBlockRow,
+                     coverHalfBlockRow(span, halfBlockRow, slot, (begin & FLIPPED) != 0u));
   }
 }
 
-// What is kept here, as it is written or handed on to PASS 2.
-uvec4 keptItem(Span span, uint k) {
-  const uint place = keptPlaces[k], block = place & (HALF_BLOCKS - 1u);
+// Cached item k, in the form that is written here or handed to WRITE_HIGH.
+uvec4 cachedItem(Span span, uint k) {
+  const uint place = cachedPlaces[k], block = place & (HALF_BLOCKS - 1u);
   const uint slot = slots[bitfieldExtract(place, TRIANGLE_SHIFT, PLACE_SHIFT - TRIANGLE_SHIFT)];
-  return uvec4(keptMasks[k], slot, keyOf(span.region, slot, keptMasks[k], block),
-               block | place >> PLACE_SHIFT << KEPT_PLACE_SHIFT);
+  return uvec4(cachedMasks[k], slot, keyOf(span.region, slot, cachedMasks[k], block),
+               block | place >> PLACE_SHIFT << CACHED_PLACE_SHIFT);
 }
 
-void writeKeptItem(uvec4 item) {
-  writeItem(item.y, item.x, item.z, item.w & (HALF_BLOCKS - 1u), item.w >> KEPT_PLACE_SHIFT);
+void writeCachedItem(uvec4 item) {
+  writeItem(item.y, item.x, item.z, item.w & (HALF_BLOCKS - 1u), item.w >> CACHED_PLACE_SHIFT);
 }
 
-KeptBuffer keptBuffer() { return KeptBuffer(uint64_t(push.list) + 8ul * push.listCapacity); }
+CachedBuffer cachedBuffer() { return CachedBuffer(uint64_t(push.list) + 8ul * push.listCapacity); }
 
 uint halfBlocksOfFrame() {
   const uvec2 grid = (push.frame.c.size + BIN_SIZE - 1u) / BIN_SIZE;
   return grid.x * grid.y * HALF_BLOCKS;
 }
 
-// Makes room for the lists of a bin, of these lengths: `starts`. All invocations take part.
+// Allocates the lists of a bin, from `lengths` to `starts`. All invocations must call this.
 void makeLists(uint number) {
   const uint self = gl_LocalInvocationIndex;
   if (self == 0u) orderedLists = lowLists = highLists = 0u;
   barrier();
   uint rank = 0u, before = 0u;
   if (self < HALF_BLOCKS) {
-    // Not all at once: that took 64 registers, and a third of the workgroups that there is room for.
+    // Unrolled, this took 64 registers, and a third fewer workgroups fitted on the GPU.
     [[dont_unroll]] for (uint b = 0u; b < self; ++b) before += lengths[b];
     const uint length = lengths[self];
     if (self == HALF_BLOCKS - 1u) total = before + length;
@@ -118,7 +119,7 @@ void makeLists(uint number) {
     if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
     if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.lowLists, lowLists);
     if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
-    // Workgroups for what there is so far: the most that any says.
+    // Workgroups for all lists so far; the maximum over all bins remains.
     const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + ORDERED_TEAMS - 1u) / ORDERED_TEAMS : 0u;
     const uint low = lowLists > 0u ? (firstLow + lowLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
     atomicMax(push.counters.c.ordered.x, min(ordered, MAX_GROUPS));
@@ -141,85 +142,85 @@ void makeLists(uint number) {
   barrier();
 }
 
-// `place`: of the part among those of high bins.
-void goThrough(Part part, uint place) {
+// `place`: index of the segment among those of high bins.
+void goThrough(Segment segment, uint place) {
   const uint self = gl_LocalInvocationIndex;
   const uvec2 grid = (push.frame.c.size + BIN_SIZE - 1u) / BIN_SIZE;
   Span span;
-  span.part = part;
-  span.region = ivec2(uvec2(part.bin % grid.x, part.bin / grid.x) * BIN_SIZE);
+  span.segment = segment;
+  span.region = ivec2(uvec2(segment.bin % grid.x, segment.bin / grid.x) * BIN_SIZE);
   span.extent = min(ivec2(push.frame.c.size) - span.region, ivec2(BIN_SIZE));
-  span.first = part.number * PART_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
-  span.count = min(2u * part.quads + part.triangles - span.first, PART_TRIANGLES);
+  span.first = segment.number * SEGMENT_TRIANGLES;  // at most 2^(PLACE_SHIFT - TRIANGLE_SHIFT)
+  span.count = min(2u * segment.quads + segment.triangles - span.first, SEGMENT_TRIANGLES);
   if (self < HALF_BLOCKS) counts[self] = cursors[self] = 0u;
-  if (self == 0u) kept = 0u;
-#if PASS == 2
-  const uint keptThere = push.partLists.at[place].kept, keptAt = push.partLists.at[place].keptFirst;
-  const bool again = keptThere > KEPT;
-  if (again) findStrips(span);
+  if (self == 0u) cached = 0u;
+#if PASS == WRITE_HIGH
+  const uint cachedThere = push.segmentLists.at[place].cached, cachedAt = push.segmentLists.at[place].cachedFirst;
+  const bool again = cachedThere > CACHE_SIZE;
+  if (again) findHalfBlockRows(span);
 #else
-  findStrips(span);
+  findHalfBlockRows(span);
 #endif
-  const uint own = part.bin * HALF_BLOCKS + self;
-#if PASS != 2
+  const uint own = segment.bin * HALF_BLOCKS + self;
+#if PASS != WRITE_HIGH
   walk(false, span);
   barrier();
 #endif
-#if PASS == 0
+#if PASS == COUNT_AND_WRITE_LOW
   if (self < HALF_BLOCKS) lengths[self] = counts[self];
-  makeLists(part.bin);
-  if (base + total > push.listCapacity) return;  // counted all the same: the host makes room
-  if (kept > KEPT) {
+  makeLists(segment.bin);
+  if (base + total > push.listCapacity) return;  // counted anyway: the host allocates more
+  if (cached > CACHE_SIZE) {
     walk(true, span);
   } else {
-    for (uint k = self; k < kept; k += GROUP) writeKeptItem(keptItem(span, k));
+    for (uint k = self; k < cached; k += GROUP) writeCachedItem(cachedItem(span, k));
   }
-#elif PASS == 1
+#elif PASS == COUNT_HIGH
   if (self < HALF_BLOCKS) {
-    push.partLists.at[place].first[self] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
+    push.segmentLists.at[place].first[self] = atomicAdd(push.binBlocks.at[own].count, counts[self]);
     memoryBarrierBuffer();
   }
   barrier();
-  const uint parts = (2u * part.quads + part.triangles + PART_TRIANGLES - 1u) / PART_TRIANGLES;
+  const uint segments = (2u * segment.quads + segment.triangles + SEGMENT_TRIANGLES - 1u) / SEGMENT_TRIANGLES;
   if (self == 0u) {
-    memoryBarrierBuffer();  // of what the others released, by the one invocation that says so
-    last = uint(atomicAdd(push.binBlocks.at[part.bin * HALF_BLOCKS].partsDone, 1u) + 1u == parts);
+    memoryBarrierBuffer();  // acquires what the other workgroups released
+    last = uint(atomicAdd(push.binBlocks.at[segment.bin * HALF_BLOCKS].segmentsDone, 1u) + 1u == segments);
     memoryBarrierBuffer();
-    keptFirst = kept > KEPT ? 0u : atomicAdd(push.counters.c.kept, kept);
-    if (kept <= KEPT && keptFirst + kept > push.keptCapacity) atomicMax(push.counters.c.overflow, 1u);
-    push.partLists.at[place].kept = kept;
-    push.partLists.at[place].keptFirst = keptFirst;
+    cachedFirst = cached > CACHE_SIZE ? 0u : atomicAdd(push.counters.c.cached, cached);
+    if (cached <= CACHE_SIZE && cachedFirst + cached > push.cachedCapacity) atomicMax(push.counters.c.overflow, 1u);
+    push.segmentLists.at[place].cached = cached;
+    push.segmentLists.at[place].cachedFirst = cachedFirst;
   }
   barrier();
-  if (kept <= KEPT && keptFirst + kept <= push.keptCapacity)
-    for (uint k = self; k < kept; k += GROUP) keptBuffer().at[keptFirst + k] = keptItem(span, k);
+  if (cached <= CACHE_SIZE && cachedFirst + cached <= push.cachedCapacity)
+    for (uint k = self; k < cached; k += GROUP) cachedBuffer().at[cachedFirst + k] = cachedItem(span, k);
   if (last == 0u) return;  // the same for all
   if (self < HALF_BLOCKS) {
     memoryBarrierBuffer();
     lengths[self] = atomicAdd(push.binBlocks.at[own].count, 0u);
   }
-  makeLists(part.bin);
+  makeLists(segment.bin);
   if (self < HALF_BLOCKS) push.binBlocks.at[own].first = starts[self];
 #else
   if (self < HALF_BLOCKS)
-    starts[self] = push.binBlocks.at[own].first + push.partLists.at[place].first[self];
+    starts[self] = push.binBlocks.at[own].first + push.segmentLists.at[place].first[self];
   barrier();
   if (again) {
     walk(true, span);
   } else {
-    for (uint k = self; k < keptThere; k += GROUP) writeKeptItem(keptBuffer().at[keptAt + k]);
+    for (uint k = self; k < cachedThere; k += GROUP) writeCachedItem(cachedBuffer().at[cachedAt + k]);
   }
 #endif
 }
 
 void main() {
-#if PASS == 0
-  const uint parts = push.rasterCounters.c.lowBins, firstPart = 0u, groupCount = push.rasterCounters.c.low.x;
+#if PASS == COUNT_AND_WRITE_LOW
+  const uint segments = push.rasterCounters.c.lowBins, firstSegment = 0u, groupCount = push.rasterCounters.c.low.x;
 #else
-  const uint parts = push.rasterCounters.c.highParts, firstPart = halfBlocksOfFrame() / HALF_BLOCKS;
+  const uint segments = push.rasterCounters.c.highSegments, firstSegment = halfBlocksOfFrame() / HALF_BLOCKS;
   const uint groupCount = push.rasterCounters.c.high.x;
 #endif
-#if PASS == 2
+#if PASS == WRITE_HIGH
   if (push.counters.c.overflow != 0u) return;
 #else
   if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex == 0u) {
@@ -230,8 +231,8 @@ void main() {
     push.counters.c.deep.z = push.counters.c.deepResolve.y = push.counters.c.deepResolve.z = 1u;
   }
 #endif
-  for (uint i = gl_WorkGroupID.x; i < parts; i += groupCount) {
-    goThrough(push.parts.at[firstPart + i], i);
-    barrier();  // the shared counts are used anew
+  for (uint i = gl_WorkGroupID.x; i < segments; i += groupCount) {
+    goThrough(push.segments.at[firstSegment + i], i);
+    barrier();  // before the shared counts are used again
   }
 }

@@ -1,6 +1,6 @@
 #version 460
-// Pixels of more than REPAIR_LIST fragments: captures these into linked lists (Yang et al. 2010).
-// Workgroup (x, y) goes through part y of the list of deep pixel x's half-block.
+// Captures the fragments of deep pixels (more than REPAIR_LIST fragments) into linked lists (Yang et al. 2010).
+// Workgroup (x, y) reads chunk y of the list of deep pixel x's half-block.
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
@@ -15,8 +15,8 @@ void capture(uint number) {
   const ivec2 corner = cornerOf(block.number, push.frame.c.size);
   const vec2 pixel = vec2(pixelOf(bit));
   const float opaque = opaqueDepthAt(corner + ivec2(pixel));
-  const uint begin = gl_WorkGroupID.y * DEEP_PART;
-  const uint end = min(begin + DEEP_PART, block.count);
+  const uint begin = gl_WorkGroupID.y * DEEP_CHUNK;
+  const uint end = min(begin + DEEP_CHUNK, block.count);
   for (uint i = begin + gl_LocalInvocationIndex; i < end; i += DEEP_GROUP) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;

@@ -1,11 +1,10 @@
 #version 460
-// Sorts and blends the lists of deep pixels, one invocation a pixel, over as many rounds as it takes.
+// Sorts and blends the lists of deep pixels, one invocation per pixel, in as many rounds as needed.
 #include "common/bindings.glsl"
 #include "common/list_sort.glsl"
 #include "lucid/half_block.glsl"
 
-// Several lists a workgroup: where a workgroup has but one, and all is uniform, llvmpipe (Mesa 22.3)
-// loses links of the list.
+// Several lists per workgroup: with one list, where everything is uniform, llvmpipe (Mesa 22.3) loses links of it.
 layout(local_size_x = DEEP_RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 

@@ -1,6 +1,6 @@
-// Sample blending (section 2): a pixel's fragments pass through a queue of DEPTH_FILTER places, which
-// mends what little disorder the sort of tri-half-blocks leaves, and are blended front to back.
-// HAS_THRESHOLD: push.alphaThreshold counts.
+// Sample blending (section 2): the fragments of a pixel pass through a queue of DEPTH_FILTER places, which corrects
+// the small disorder that the sort of tri-half-blocks leaves, and are blended front to back. HAS_THRESHOLD:
+// push.alphaThreshold is used.
 #ifndef OITLAB_LUCID_DEPTH_FILTER_GLSL
 #define OITLAB_LUCID_DEPTH_FILTER_GLSL
 
@@ -11,16 +11,16 @@ struct Pixel {
   vec4 accumulated;  // premultiplied
   float lastInvW;    // of the fragment blended last
   uint lastId;
-  bool invalid;      // one came after one that it is in front of
+  bool invalid;      // a fragment came after one that it is in front of
   uint samples;      // blended
   Fragment queue[DEPTH_FILTER];  // front to back
 };
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
 
-bool fragmentBefore(Fragment a, Fragment b) { return isInFront(a.invW, a.id, b.invW, b.id); }
+bool isInFront(Fragment a, Fragment b) { return isInFront(a.invW, a.id, b.invW, b.id); }
 
-// An empty place is a fragment in front of all, of no weight: it leaves first and changes nothing.
+// An empty place holds a transparent fragment in front of all others. It leaves first and changes nothing.
 void clearPixel(out Pixel p) {
   p.accumulated = vec4(0.0);
   p.lastInvW = NEAREST;
@@ -32,8 +32,8 @@ void clearPixel(out Pixel p) {
 
 bool isFull(Pixel p) { return HAS_THRESHOLD == 1 && p.accumulated.a >= push.alphaThreshold; }
 
-// Order is right if and only if it never decreases: no wrong pixel goes unnoticed. Fragments behind
-// the alpha threshold are not blended, but their order is still watched.
+// The order is right if and only if no fragment is in front of the one before it, so every wrong pixel is found.
+// Fragments behind the alpha threshold are not blended, but their order is still checked.
 void blendFragment(inout Pixel p, Fragment f) {
   p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   if (!isFull(p)) {
@@ -43,19 +43,19 @@ void blendFragment(inout Pixel p, Fragment f) {
   }
 }
 
-// Of the queue and `f` the nearest leaves. A pixel at the alpha threshold blends no more: its fragments
-// need no colour.
+// Inserts `f`, and blends the nearest fragment of the queue. A pixel that has reached the alpha threshold blends
+// nothing more, so that its fragments need no color.
 void pushFragment(inout Pixel p, Fragment f) {
   if (isFull(p)) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   } else {
     Fragment leaving = p.queue[0], carried = f;
-    if (fragmentBefore(f, leaving)) {
+    if (isInFront(f, leaving)) {
       carried = leaving;
       leaving = f;
     }
     [[unroll]] for (int i = 1; i < DEPTH_FILTER; ++i) {
-      if (fragmentBefore(p.queue[i], carried)) {
+      if (isInFront(p.queue[i], carried)) {
         p.queue[i - 1] = p.queue[i];
       } else {
         p.queue[i - 1] = carried;

@@ -1,5 +1,5 @@
-// Sorting by depth and primitive id within a subgroup, in shared memory. The including shader defines SUBGROUP_SIZE,
-// TEAMS and LIST, declares `push`, and says what breaks a tie: idOfKey().
+// Sorting by depth and primitive id within a subgroup, in shared memory. The includer defines SUBGROUP_SIZE, TEAMS
+// and LIST, and idOfKey(), which breaks ties.
 #ifndef OITLAB_LUCID_EXACT_SORT_GLSL
 #define OITLAB_LUCID_EXACT_SORT_GLSL
 
@@ -12,21 +12,21 @@ shared uvec2 keys[TEAMS * LIST];
 
 uint idOfKey(uvec2 key);
 
-bool keyBefore(uvec2 a, uvec2 b) {
+bool isInFront(uvec2 a, uvec2 b) {
   if (a.x != b.x) return a.x > b.x;
   if (a.y == noKey || b.y == noKey) return b.y == noKey && a.y != noKey;
   return idOfKey(a) < idOfKey(b);
 }
 
-// Sorts keys[first, first + count), front to back; count <= LIST. All lanes of the subgroup take part.
+// Sorts keys[first, first + count), front to back; count <= LIST. All lanes of the subgroup must call this.
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
   teamBarrier();
   if (count <= SUBGROUP_SIZE) {
-    // Few: each key counts those before it.
+    // Few keys: each lane counts the keys before its own.
     const uvec2 own = lane < count ? keys[first + lane] : uvec2(0u, noKey);
     uint rank = 0u;
-    for (uint i = 0u; i < count; ++i) rank += uint(keyBefore(keys[first + i], own));
+    for (uint i = 0u; i < count; ++i) rank += uint(isInFront(keys[first + i], own));
     teamBarrier();
     if (lane < count) keys[first + rank] = own;
     teamBarrier();
@@ -43,7 +43,7 @@ void sortKeys(uint first, uint count) {
         const uint low = 2u * i - (i & (step - 1u)), high = low + step;
         const uvec2 a = keys[first + low], b = keys[first + high];
         const bool upwards = (low & size) == 0u;
-        if (upwards ? keyBefore(b, a) : keyBefore(a, b)) {
+        if (upwards ? isInFront(b, a) : isInFront(a, b)) {
           keys[first + low] = b;
           keys[first + high] = a;
         }

@@ -1,31 +1,31 @@
-// Sample shading (section 2, phase 3): a triangle made ready for one half-block, and its fragment at
-// one pixel. The including shader declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS
-// (some triangle's corners differ in colour), HAS_ATTRIBUTES (textures or colours) and HAS_SMOOTH (some
-// triangle's corners differ in normal). What a scene has not is not in the program: on GPUs it would
-// take registers, and llvmpipe goes through the code of branches that no lane takes.
+// Sample shading (section 2, phase 3): a triangle prepared for one half-block, and its fragment at one pixel. The
+// includer declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS (the corners of some triangle differ
+// in color), HAS_ATTRIBUTES (textures or colors) and HAS_SMOOTH (the corners of some triangle differ in normal). Code
+// for what a scene does not have is left out: on GPUs it would take registers, and llvmpipe executes branches that no
+// lane takes.
 #ifndef OITLAB_LUCID_FRAGMENT_GLSL
 #define OITLAB_LUCID_FRAGMENT_GLSL
 
 #include "common/normal.glsl"
 #include "common/shade.glsl"
 #include "lucid/lucid_types.h"
-#include "raster/records.glsl"
+#include "raster/triangles.glsl"
 
 // Whether anything is interpolated.
 #define INTERPOLATES (HAS_SMOOTH == 1 || HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
 
-// What a triangle's fragments need, with the half-block's first sample as the origin.
+// What the fragments of a triangle need. The origin is the half-block's first sample.
 struct Prepared {
   vec4 w;      // 1 / w: at the origin, per pixel right, per pixel down; PREPARED_* bits
   vec4 n0;     // normal of the corner that weighs 1 - b1 - b2; alpha cutoff
-  vec4 color;  // of the material, times the vertex colour where the corners share one
-  vec4 range;  // least and most 1 / w; primitive id
+  vec4 color;  // of the material, times the vertex color if all corners have the same
+  vec4 range;  // smallest and largest 1 / w; primitive id
   // Where the scene interpolates:
   vec4 b1, b2;   // the weights over w: at the origin, per pixel right, per pixel down
   vec3 n1, n2;   // normals of the other corners less that of the first
-  // Of textured and coloured ones:
+  // Of triangles with textures or colors:
   vec4 uvs;           // texture coordinates of the first corner, difference of the second
-  vec4 more;          // difference of the third; vertex colours of the second and third, packed
+  vec4 more;          // difference of the third corner; packed colors of the second and third
   uint firstColor;    // of the first corner, packed
 };
 
@@ -35,8 +35,8 @@ struct Fragment {
   vec4 color;  // straight, linear
 };
 
-// 1 / w at the half-block's first sample, and at a pixel of it. `precise`: the order of fragments must
-// not depend on which shader asks. Slivers have steep planes: theirs stay within their corners'.
+// 1 / w at the half-block's first sample, and at a pixel of it. `precise`, because the order of fragments must be the
+// same in every shader. Slivers have steep planes, so 1 / w is clamped to the range of the corners.
 float originInvW(ShadeTriangle s, ivec2 corner) {
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
   precise const float invW = fma(s.invWSlope.x, d.x, fma(s.invWSlope.y, d.y, s.invW));
@@ -74,10 +74,10 @@ float opaqueDepthAt(ivec2 place) {
 #endif
 }
 
-// Of the material, in the low bits of the word beside its index.
+// Bits of the material, below its index in the same word.
 #define PREPARED_ATLAS 3u
 #define PREPARED_IGNORE_ALPHA 4u
-#define PREPARED_COLORED 8u  // the corners' colours differ; n2.w is that of the first
+#define PREPARED_COLORED 8u  // the corners differ in color
 #define PREPARED_MATERIAL_SHIFT 4
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
@@ -132,8 +132,8 @@ Prepared prepare(uint slot, ivec2 corner) { return prepare(loadShading(push.mesh
 float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.range.x, p.range.y, pixel); }
 uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }
 
-// The colour (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block; false where
-// the material cuts it out.
+// The color (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block. Returns false if the
+// material cuts it out.
 bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   const uint bits = floatBitsToUint(p.w.w);
   GpuMaterial material;
@@ -143,7 +143,7 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   material.ignoreVertexAlpha = 1u;
   Surface s;
   s.normal = p.n0.xyz;
-  s.color = vec4(1.0);  // a part of `baseColor`
+  s.color = vec4(1.0);  // contained in `baseColor`
 #if INTERPOLATES
   precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
   precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));

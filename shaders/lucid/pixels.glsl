@@ -1,5 +1,5 @@
-// How fragments come to the pixels of a half-block: of triangles prepared for all of them, or as samples that
-// lanes took. The including shader declares `push` and defines SUBGROUP_SIZE, SMALL_SUBGROUP and TEAMS.
+// The two ways in which fragments come to the pixels of a half-block: from prepared triangles, or as samples that
+// lanes took. The includer declares `push` and defines SUBGROUP_SIZE, SMALL_SUBGROUP and TEAMS.
 #ifndef OITLAB_LUCID_PIXELS_GLSL
 #define OITLAB_LUCID_PIXELS_GLSL
 
@@ -10,7 +10,7 @@
 
 shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
 
-// Pixels of a lane: one of each group. Where there are several, code is not to be made for each.
+// A lane owns one pixel of each group. Where there are several groups, loops over them are not unrolled.
 #define GROUPS (32u / OWNERS)
 #if SMALL_SUBGROUP
 #define EACH_GROUP [[dont_unroll]]
@@ -18,17 +18,17 @@ shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
 #define EACH_GROUP [[unroll]]
 #endif
 
-// The lane's pixel of group g: its place in the coverage masks.
+// The bit of the lane's pixel of group g in the coverage masks.
 uint bitOf(uint g) { return min(gl_SubgroupInvocationID + OWNERS * g, 31u); }
 
-// Places of the coverage masks that group g of a team's pixels has.
+// The bits of group g in the coverage masks.
 uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g); }
 
-// The fragment of a prepared triangle at a pixel that it covers or, for nothing, at another.
+// The fragment of a prepared triangle at a pixel. Where the triangle does not cover it, the fragment is not used.
 struct Taken {
   Fragment f;
-  bool kept;   // it is there to be pushed
-  bool blends; // and not behind the alpha threshold
+  bool kept;   // the fragment exists and must be pushed
+  bool blends; // and it is not behind the alpha threshold
 };
 
 Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
@@ -39,7 +39,7 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   taken.f.color = vec4(0.0);
   taken.kept = covered && !isHidden(taken.f.invW, opaque);
   taken.blends = taken.kept && !full;
-#if HAS_TEXTURES  // not for nothing
+#if HAS_TEXTURES  // a branch is cheaper than texture reads whose result is not used
   if (taken.blends)
 #endif
   {
@@ -50,14 +50,14 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   return taken;
 }
 
-// Pushes to a pixel, `bit` of those in `own`, the fragments of prepared triangles: `count` of them, the
-// first at place `at` of the batch and first of the team's prepared ones.
+// Pushes the fragments of `count` prepared triangles to a pixel: `bit`, if it is in `own`. The first triangle is at
+// place `at` of the batch, and is the first of the team's prepared triangles.
 void blendPrepared(inout Pixel p, uint own, uint bit, float opaque, uint at, uint count) {
   const uint lane = gl_SubgroupInvocationID, first = gl_SubgroupID * PREPARED_COUNT;
   const uint pixelBit = own & (1u << bit);
   const vec2 pixel = vec2(pixelOf(bit));
   if (SMALL_SUBGROUP == 0) {
-    // In pairs, and without branches: what the one waits for, the other has time for.
+    // In pairs and without branches, so that one fragment's latency hides behind the other's work.
     for (uint k = 0u; k < count; k += 2u) {
       const uint next = min(k + 1u, count - 1u);
       const bool full = isFull(p);
@@ -69,7 +69,7 @@ void blendPrepared(inout Pixel p, uint own, uint bit, float opaque, uint at, uin
       p.samples += uint(t1.blends);
     }
   } else {
-    // There are several groups of pixels: only those that reach this one.
+    // There are several groups of pixels: only the triangles that reach this one.
     const bool reaches = lane < count && (batch[at + min(lane, count - 1u)].y & groupMask(bit / OWNERS)) != 0u;
     for (uint rest = subgroupBallot(reaches).x; rest != 0u; rest &= rest - 1u) {
       const uint k = findLSB(rest);
@@ -80,7 +80,7 @@ void blendPrepared(inout Pixel p, uint own, uint bit, float opaque, uint at, uin
   }
 }
 
-// Pushes to a pixel, `bit` of those in `own`, the samples that fell on it.
+// Pushes the samples that fell on a pixel to it: `bit`, if it is in `own`.
 void blendSamples(inout Pixel p, uint own, uint bit, float opaque) {
   uint arrived = 0u;
   if ((own & (1u << bit)) != 0u) arrived = samplesOf[32u * gl_SubgroupID + bit];

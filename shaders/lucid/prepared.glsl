@@ -1,18 +1,17 @@
-// Triangles made ready once, by one lane each, for all lanes of their team to read. The including
-// shader defines TEAMS.
+// Prepared triangles: one lane prepares each, and all lanes of the team read it. The includer defines TEAMS.
 #ifndef OITLAB_LUCID_PREPARED_GLSL
 #define OITLAB_LUCID_PREPARED_GLSL
 
 #include "lucid/fragment.glsl"
 
-// Words of 16 bytes. All triangles need the first four; lanes that read the same word take turns like
-// any others. An odd number, so that the accesses of neighbouring lanes fall into different banks.
+// Number of 16-byte words per triangle. Every scene needs the first four. The number is odd, so that the accesses of
+// neighboring lanes fall into different banks.
 #define HAS_MORE (HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
 #define PREPARED_WORDS (HAS_MORE ? 9u : INTERPOLATES ? 7u : 5u)
 
-// Places of a team: even, since they are shaded in pairs, and with room for two words of each of 32
-// lanes (sampleWord). Few, since shared memory is what limits how many subgroups a GPU holds: an NVIDIA
-// H200 gives it 48 KB of each multiprocessor, whatever it has (docs/performance.md).
+// Triangles per team: an even number, since they are shaded in pairs, with room for two words for each of 32 lanes
+// (sampleWord). The number is small because shared memory limits how many subgroups run at the same time: an NVIDIA
+// H200 gives it 48 KB per multiprocessor (docs/performance.md).
 #define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 14u)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
@@ -55,7 +54,7 @@ Prepared loadPrepared(uint at) {
   return p;
 }
 
-// The same memory, where a team's lanes hand each other samples instead: two words for each lane.
+// The same memory is used where a team's lanes exchange samples instead: two words per lane.
 uint sampleWord(uint lane) { return gl_SubgroupID * PREPARED_COUNT * PREPARED_WORDS + 2u * lane; }
 
 void storeSample(uint lane, Fragment f) {

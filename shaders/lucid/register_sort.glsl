@@ -7,9 +7,9 @@
 
 #extension GL_KHR_shader_subgroup_shuffle : require
 
-// Returns the mask of the bits of `keys` that are places in the list. By rank, front to back: key e is
-// keys[e % SORT_KEYS] of lane e / SORT_KEYS, so that most steps stay within a lane, and none waits for
-// memory. The list has at most SORT_KEYS * SUBGROUP_SIZE; all lanes of the subgroup take part.
+// Returns the mask of those bits of `keys` that hold the place in the list. Key e, counted front to back, is
+// keys[e % SORT_KEYS] of lane e / SORT_KEYS, so that most steps stay within a lane, and none waits for memory. The
+// list has at most SORT_KEYS * SUBGROUP_SIZE entries. All lanes of the subgroup must call this.
 uint SORT(HalfBlock block, out uint keys[SORT_KEYS]) {
   const uint lane = gl_SubgroupInvocationID, bits = findMSB(block.count) + 1;
   uint low = 0xffffffffu, high = 0u;
@@ -22,7 +22,7 @@ uint SORT(HalfBlock block, out uint keys[SORT_KEYS]) {
   }
   EACH(LOAD)
 #undef LOAD
-  teamBarrier();  // the order may be written where the keys are
+  teamBarrier();  // before the order replaces the depths in memory
   const float farthest = uintBitsToFloat(subgroupMin(low)), nearest = uintBitsToFloat(subgroupMax(high));
 #define PACK(i) \
   if (i * SUBGROUP_SIZE + lane < block.count) \
@@ -49,7 +49,7 @@ uint SORT(HalfBlock block, out uint keys[SORT_KEYS]) {
   return (1u << bits) - 1u;
 }
 
-// Sorts the list, and leaves the order in place of the depths.
+// Sorts the list, and replaces the depths by the order.
 void STORE(HalfBlock block) {
   uint keys[SORT_KEYS];
   const uint placeMask = SORT(block, keys), first = gl_SubgroupInvocationID * SORT_KEYS;

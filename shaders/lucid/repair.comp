@@ -1,8 +1,7 @@
 #version 460
-// Exact order for pixels whose order went wrong, and for lists too long for high_raster. The paper
-// proposes to register such pixels and to process them with a slower, conservative algorithm
-// (section 2, "Sample blending"): one subgroup a half-block takes its pixels one after the other,
-// sorts their fragments in full and blends them.
+// Exact order for pixels whose order was wrong, and for lists that are too long for high raster. The paper proposes
+// to register such pixels and to process them with a slower, conservative algorithm (section 2, "Sample blending").
+// Here, one subgroup per half-block takes its pixels one after the other, sorts all their fragments and blends them.
 #include "common/bindings.glsl"
 #include "lucid/half_block.glsl"
 
@@ -27,11 +26,11 @@ float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
   return boundedInvW(originInvW(s, corner), s, pixel);
 }
 
-// To deep_capture.comp: more fragments than can be sorted here.
+// Passes a pixel with more fragments than can be sorted here on to deep_capture.comp.
 void handOver(uint bit, uint count) {
   const uint deep = atomicAdd(push.counters.c.deepPixels, 1u);
   atomicAdd(push.counters.c.deepNodes, count);
-  atomicMax(push.counters.c.deep.y, (block.count + DEEP_PART - 1u) / DEEP_PART);
+  atomicMax(push.counters.c.deep.y, (block.count + DEEP_CHUNK - 1u) / DEEP_CHUNK);
   if (deep >= push.deepCapacity) return;
   if (deep < MAX_GROUPS) atomicAdd(push.counters.c.deep.x, 1u);
   if (deep % DEEP_RESOLVE_GROUP == 0u) atomicAdd(push.counters.c.deepResolve.x, 1u);

@@ -1,29 +1,29 @@
-// Lanes take the samples of small triangles as they come, and hand them to the pixels they fall on
-// (section 2, phase 3). The including shader defines SUBGROUP_SIZE and TEAMS.
+// Lanes take the samples of small triangles one after the other and hand them to the pixels that they fall on
+// (section 2, phase 3). The includer defines SUBGROUP_SIZE and TEAMS.
 #ifndef OITLAB_LUCID_SAMPLES_GLSL
 #define OITLAB_LUCID_SAMPLES_GLSL
 
 #include "lucid/team.glsl"
 
-// Lanes that take a sample, and pixels that a team goes through side by side.
+// Lanes that take samples, and pixels that a team processes at the same time.
 #define OWNERS min(SUBGROUP_SIZE, 32u)
 
-// The triangles of a batch that have samples: slot and mask, and samples of those before.
+// The triangles of a batch that have samples: slot and mask, and the number of samples before each.
 shared uvec2 batch[TEAMS * SUBGROUP_SIZE];
 shared uint samplesBefore[TEAMS * SUBGROUP_SIZE];
 
-// Which of a batch's samples the lanes have come to.
+// A batch of triangles, and how far the lanes have taken its samples.
 struct Batch {
-  uint at;       // of the team's places in `batch`
+  uint at;       // first of the team's places in `batch`
   uint size;     // triangles that have samples
   uint samples;  // of all of them
   uint place;    // in `batch`, of the lane's own triangle, if it has samples
   uint begin;    // samples before it; past the end if it has none
-  uint started;  // triangles whose first sample was taken
+  uint started;  // number of triangles whose first sample was taken
 };
 
-// Each lane brings one triangle, or a mask of 0. All lanes of the subgroup take part. What is in `batch`
-// is there for others after the next teamBarrier().
+// Each lane brings one triangle, or a mask of 0. All lanes of the subgroup must call this. Other lanes may read
+// `batch` after the next teamBarrier().
 Batch makeBatch(uint slot, uint mask) {
   Batch b;
   b.at = gl_SubgroupID * SUBGROUP_SIZE;
@@ -53,12 +53,11 @@ uint nthBit(uint mask, uint n) {
   return place;
 }
 
-// The lane's among the samples [first, first + OWNERS): the triangle's slot and the bit of the pixel.
-// Call with first = 0, OWNERS, ... in turn, all lanes. Where there is none, the result is not to be
-// used.
+// The lane's sample of [first, first + OWNERS): the triangle's slot and the bit of the pixel. All lanes must call
+// this with first = 0, OWNERS, ... in order. The result is meaningless for lanes beyond the last sample.
 uvec2 sampleOf(inout Batch b, uint first) {
   const uint lane = gl_SubgroupInvocationID;
-  const bool starts = b.begin - first < OWNERS;  // wraps where it began before
+  const bool starts = b.begin - first < OWNERS;  // wraps around if it began earlier
   const uint startBits = subgroupOr(starts ? 1u << (b.begin - first) : 0u);
   const uint number = b.started + bitCount(startBits & ((2u << min(lane, 31u)) - 1u)) - 1u;
   b.started += bitCount(startBits);

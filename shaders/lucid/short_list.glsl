@@ -1,5 +1,5 @@
-// The order of a list of at most ORDERED_LIST, for the subgroup that goes through it. The including
-// shader declares a `push` that has keys.
+// The order of a list of at most ORDERED_LIST, for the subgroup that blends it. The includer declares `push` with
+// keys.
 #ifndef OITLAB_LUCID_SHORT_LIST_GLSL
 #define OITLAB_LUCID_SHORT_LIST_GLSL
 
@@ -10,7 +10,7 @@ uint placeMask;
 
 void orderList(HalfBlock block) { placeMask = sortList(gl_SubgroupID * LIST, block); }
 
-// In the list, of the i-th tri-half-block from the front: i = n * SUBGROUP_SIZE + lane.
+// Place in the list of the i-th tri-half-block from the front; i = n * SUBGROUP_SIZE + lane.
 uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & placeMask; }
 
 #else
@@ -49,7 +49,7 @@ void orderList(HalfBlock block) {
 uint placeOf(HalfBlock block, uint i) { return i < SUBGROUP_SIZE ? firstPlace : secondPlace; }
 #endif
 
-// Leaves the order for others, in place of the depths.
+// Replaces the depths by the order, for low raster.
 void storeOrder(HalfBlock block) {
   for (uint i = gl_SubgroupInvocationID; i < block.count; i += SUBGROUP_SIZE)
     push.keys.at[block.first + i] = placeOf(block, i);

@@ -1,5 +1,5 @@
-// Sorting within a subgroup, in shared memory. The including shader defines SUBGROUP_SIZE, TEAMS and
-// LIST.
+// Sorting within a subgroup, in shared memory. The includer defines SUBGROUP_SIZE, TEAMS and LIST, and declares
+// `push` with keys.
 #ifndef OITLAB_LUCID_SORT_GLSL
 #define OITLAB_LUCID_SORT_GLSL
 
@@ -8,14 +8,15 @@
 
 shared uint keys[TEAMS * LIST];
 
-#define RANKED 2u  // keys of a lane up to which counting is quicker
+#define RANKED 2u  // up to so many keys per lane, counting is faster
 
-// Sorts keys[first, first + count), ascending; count <= LIST. All lanes of the subgroup take part.
+// Sorts keys[first, first + count), ascending; count <= LIST. All lanes of the subgroup must call this.
 void sortKeys(uint first, uint count) {
   const uint lane = gl_SubgroupInvocationID;
   teamBarrier();
   if (count <= RANKED * SUBGROUP_SIZE) {
-    // Few: each key counts those before it. Independent reads, where bitonic sorting waits for each step.
+    // Few keys: each lane counts the keys before its own. The reads are independent, while each step of a bitonic
+    // sort waits for the one before.
     uint own[RANKED], rank[RANKED];
     [[unroll]] for (uint t = 0u; t < RANKED; ++t) {
       own[t] = t * SUBGROUP_SIZE + lane < count ? keys[first + t * SUBGROUP_SIZE + lane] : padding;
@@ -50,12 +51,11 @@ void sortKeys(uint first, uint count) {
   teamBarrier();
 }
 
-// Sorts the list of a half-block by depth: keys[first, first + block.count) are its places, front to
-// back, in the bits of the mask that is returned. All lanes of the subgroup take part. The including
-// shader declares push.keys.
+// Sorts the list of a half-block by depth. Afterwards keys[first, first + block.count) hold its places, front to
+// back, in the bits of the returned mask. All lanes of the subgroup must call this.
 uint sortList(uint first, HalfBlock block) {
   const uint lane = gl_SubgroupInvocationID;
-  // Depths are sorted within their range, so that few bits tell them apart.
+  // Depths are scaled to their range, so that few bits tell them apart.
   uint low = 0xffffffffu, high = 0u;
   for (uint i = lane; i < block.count; i += SUBGROUP_SIZE) {
     const uint key = push.keys.at[block.first + i];

@@ -3,14 +3,14 @@
 #define OITLAB_LUCID_SORT_KEY_GLSL
 
 #include "lucid/lucid_types.h"
-#include "raster/records.glsl"
+#include "raster/triangles.glsl"
 
 // 1 / w of a triangle at a place on the screen. Near enough to sort by: the order of fragments is that
 // of fragment.glsl.
 float roughInvW(Mesh mesh, uint slot, vec2 place) {
-#if HAS_IRREGULAR
-  if (isIrregular(slot)) {
-    const ShadeTriangle t = mesh.irregular.at[slot & ~IRREGULAR].shading;
+#if HAS_UNSNAPPED
+  if (isUnsnapped(slot)) {
+    const ShadeTriangle t = mesh.unsnapped.at[slot & ~UNSNAPPED].shading;
     return t.invW + dot(t.invWSlope, place - t.anchor);
   }
 #endif

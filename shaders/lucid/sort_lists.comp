@@ -1,11 +1,11 @@
 #version 460
-// Stage 3, phase 2: sorts the lists that ordered raster does not, a subgroup a half-block, and leaves
-// their order in place of the depths. In a program of its own: keys take registers or shared memory, which
-// raster needs for other things (docs/performance.md). Registers where a lane has 16 keys of LOW_LIST at most;
-// with SMALL_SUBGROUP it has more. 32, which HIGH would take, came out of NVIDIA's compiler (580.159.04) in a
-// wrong order: lucid_sort_test.cpp found it.
+// Stage 3, phase 2: sorts the lists that are too long for ordered raster, one subgroup per half-block, and replaces
+// the depths by the order. This is a separate program because keys take registers or shared memory that raster
+// needs for other purposes (docs/performance.md). Keys are sorted in registers where a lane has at most 16 of them;
+// with SMALL_SUBGROUP it has more. HIGH would need 32, for which NVIDIA's compiler (580.159.04) made code that
+// sorts wrongly (lucid_sort_test.cpp).
 //
-// HIGH 1: lists of more than LOW_LIST, of which those that are too long here need no order (blend.comp).
+// HIGH 1: lists with more than LOW_LIST. Those with more than HIGH_LIST need no order (blend.comp).
 #include "lucid/half_block.glsl"
 
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
@@ -56,7 +56,7 @@ TEAM_MAIN void main() {
 #if HIGH
   const uint groups = push.counters.c.high.x, count = subgroupBroadcastFirst(push.counters.c.highLists);
 #else
-  // Not low.x, which ordered raster adds to at the same time.
+  // Not low.x, to which ordered raster adds at the same time.
   const uint count = subgroupBroadcastFirst(push.counters.c.lowLists);
   const uint groups = min((count + TEAMS - 1u) / TEAMS, MAX_GROUPS);
 #endif

@@ -6,7 +6,7 @@
 
 #extension GL_KHR_memory_scope_semantics : require
 
-// Lanes that part come together again where the control flow joins: Vulkan promises it only with this.
+// With this, lanes that diverge converge again where the control flow joins. Without it Vulkan does not promise that.
 #if UNIFORM_CONTROL_FLOW
 #extension GL_EXT_subgroup_uniform_control_flow : require
 #define TEAM_MAIN [[subgroup_uniform_control_flow]]
@@ -30,7 +30,7 @@ void teamBarrier() {
 #endif
 }
 
-// The same for all lanes, which compilers cannot tell.
+// The value is the same for all lanes. This tells the compiler.
 HalfBlock uniformly(HalfBlock block) {
   return HalfBlock(subgroupBroadcastFirst(block.number), subgroupBroadcastFirst(block.first),
                    subgroupBroadcastFirst(block.count));

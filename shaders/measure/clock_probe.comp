@@ -7,7 +7,7 @@ layout(push_constant, scalar) uniform Push { ClockProbePush push; };
 
 void main() {
   float x = float(gl_LocalInvocationIndex) / float(CLOCK_PROBE_GROUP);
-  for (uint turn = 0u; turn < push.turns; ++turn)
+  for (uint iteration = 0u; iteration < push.iterations; ++iteration)
     [[unroll]] for (uint i = 0u; i < CLOCK_PROBE_UNROLL; ++i) x = fma(x, push.factor, push.summand);
   // Never so, which the compiler cannot know: it has to compute x, and nothing waits for memory.
   if (x > push.threshold) push.result.value = x;

@@ -9,7 +9,7 @@ namespace oitlab {
 #endif
 
 #define CLOCK_PROBE_GROUP 128u
-#define CLOCK_PROBE_UNROLL 32u  // fma a turn of the loop: its own work hardly counts
+#define CLOCK_PROBE_UNROLL 32u  // fma a iteration of the loop: its own work hardly counts
 
 #ifndef __cplusplus
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ClockProbeResult { float value; };
@@ -17,7 +17,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ClockProbeRe
 
 struct ClockProbePush {
   ADDRESS_OF(ClockProbeResult) result;
-  uint turns;       // of CLOCK_PROBE_UNROLL fma, one after another
+  uint iterations;       // of CLOCK_PROBE_UNROLL fma, one after another
   float factor;     // x = x * factor + summand
   float summand;
   float threshold;  // what exceeds it is stored

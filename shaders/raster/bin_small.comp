@@ -1,8 +1,8 @@
 #version 460
-// Stage 2, phase 3 for small quads: writes each to the lists of the bins that its box overlaps. Up to
-// 3 of 4 may be overlapped by the box alone; rasterization finds these empty.
+// Stage 2, phase 3 for small quads: writes each quad to the lists of the bins that its bounding box overlaps. Up to 3
+// of 4 may be overlapped only by the box. Rasterization then finds no coverage.
 #include "raster/raster_types.h"
-#include "raster/together.glsl"
+#include "raster/subgroup_aggregate.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
@@ -19,7 +19,7 @@ void main() {
       const bool valid = k < extent.x * extent.y;
       if (!subgroupAny(valid)) break;
       const uint bin = (first.y + k / max(extent.x, 1u)) * columns + first.x + k % max(extent.x, 1u);
-      const Together t = gather(bin, valid);
+      const Aggregate t = aggregate(bin, valid);
       uint place = 0u;
       if (t.count > 0u)
         place = push.bins.at[bin].quadOffset + atomicAdd(push.bins.at[bin].quadCursor, t.count);

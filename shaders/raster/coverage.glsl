@@ -1,23 +1,23 @@
-// Which samples (pixel centres) a triangle covers. All arithmetic on snapped edges is exact, and an
-// edge that two triangles share is the same edge, negated, in both: a mesh covers each sample once.
+// The samples (pixel centers) that a triangle covers. All arithmetic on snapped edges is exact, and two triangles that
+// share an edge compute the same edge function with opposite signs. Therefore a mesh covers each sample once.
 #ifndef OITLAB_RASTER_COVERAGE_GLSL
 #define OITLAB_RASTER_COVERAGE_GLSL
 
-#include "raster/records.glsl"
+#include "raster/triangles.glsl"
 
-// c + a * i + b * j >= 0 inside, i and j pixels from the region's first sample: the edge function in
-// units of a pixel, rounded down, which keeps its sign since the steps are whole.
+// Inside: c + a * i + b * j >= 0, where i and j count pixels from the region's first sample. c is the edge function
+// divided by the subpixel steps and rounded down, which keeps the sign since a and b are whole numbers.
 struct Edge {
   int c, a, b;
 };
 
-// Vulkan's rule for samples on an edge: they belong to the triangle right of or below it.
+// Vulkan's rule for samples on an edge: they belong to the triangle to the right of the edge or below it.
 bool ownsItsSamples(ivec2 direction) {
   return direction.y < 0 || (direction.y == 0 && direction.x > 0);
 }
 
-// `region`: the pixel that i and j count from. Valid for i and j in 0..31: beyond +-2^30 the edge is
-// so far away that its sign is the same over the whole bin.
+// `region`: the pixel from which i and j count. Valid for i and j in 0..31: an edge beyond +-2^30 is so far away that
+// the sign is the same in the whole bin.
 Edge makeEdge(ivec2 from, ivec2 to, ivec2 region) {
   const ivec2 d = to - from;
   const ivec2 s = (region << SUBPIXEL_BITS) + (1 << (SUBPIXEL_BITS - 1)) - from;
@@ -31,8 +31,8 @@ bool rejectsBin(Edge e) {
   return e.c + max(e.a, 0) * last + max(e.b, 0) * last < 0;
 }
 
-// Narrows [low, high] to the columns of row j that lie inside, in constant time (section 2,
-// "Triangle rasterization"). The float quotient is off by one at most; whole numbers decide.
+// Narrows [low, high] to the columns of row j that lie inside, in constant time (section 2, "Triangle
+// rasterization"). The float quotient is wrong by at most one; integer arithmetic decides.
 void narrow(Edge e, float inverseA, int j, inout int low, inout int high) {
   const int r = e.c + e.b * j;
   if (e.a == 0) {
@@ -72,7 +72,7 @@ RegionEdges regionEdges(RasterTriangle t, ivec2 region) {
   return r;
 }
 
-// Bit i: the sample of column i, row j of the region is covered.
+// Bit i is set if the sample in column i, row j of the region is covered.
 uint rowCoverage(RegionEdges r, int j) {
   int low = 0, high = 31;
   narrow(r.edge[0], r.inverseA.x, j, low, high);
@@ -81,27 +81,28 @@ uint rowCoverage(RegionEdges r, int j) {
   return bitsBetween(low, high);
 }
 
-// Irregular triangles: an edge between snapped vertices is that of the neighbour's, others are 3D
-// edge functions. Samples exactly on these go by an order of their ends, the same for both sides.
+// Unsnapped triangles: an edge between two snapped vertices is computed like that of a snapped neighbor. Other edges
+// are 3D edge functions. The order of the edge's ends decides about samples exactly on it, on both sides in the same
+// way.
 bool comesBefore(vec3 a, vec3 b) {
   return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
 }
 
-// Vertices are read where they are needed: few triangles are irregular, and registers kept for them
-// would be taken from all.
-uint irregularRow(IrregularBuffer irregular, uint slot, float near, ivec2 region, int j) {
-  const uint index = slot & ~IRREGULAR;
+// Vertices are read again wherever they are needed: few triangles are unsnapped, and registers for them would be
+// taken from all triangles.
+uint unsnappedRow(UnsnappedBuffer unsnapped, uint slot, float near, ivec2 region, int j) {
+  const uint index = slot & ~UNSNAPPED;
   uint row = 0xffffffffu;
   [[dont_unroll]] for (int k = 0; k < 3; ++k) {
     const int next = k == 2 ? 0 : k + 1;
     const uint both = 1u << k | 1u << next;
-    if ((irregular.at[index].snaps & both) == both) {
-      const Edge e = makeEdge(irregular.at[index].snapped[k], irregular.at[index].snapped[next], region);
+    if ((unsnapped.at[index].snaps & both) == both) {
+      const Edge e = makeEdge(unsnapped.at[index].snapped[k], unsnapped.at[index].snapped[next], region);
       int low = 0, high = 31;
       narrow(e, 1.0 / float(e.a), j, low, high);
       row &= bitsBetween(low, high);
     } else {
-      const vec3 from = irregular.at[index].p[k], to = irregular.at[index].p[next];
+      const vec3 from = unsnapped.at[index].p[k], to = unsnapped.at[index].p[next];
       const vec3 n = edgePlane(from, to);
       const bool owns = comesBefore(from, to);
       const float y = float(region.y + j) + 0.5;
@@ -111,8 +112,8 @@ uint irregularRow(IrregularBuffer irregular, uint slot, float near, ivec2 region
       }
     }
   }
-  const ShadeTriangle planes = irregular.at[index].shading;
-  // Nothing nearer than the near plane (or behind the eye) is drawn.
+  const ShadeTriangle planes = unsnapped.at[index].shading;
+  // Samples nearer than the near plane (or behind the eye) are not drawn.
   const float dy = float(region.y + j) + 0.5 - planes.anchor.y;
   [[dont_unroll]] for (int i = 0; i < 32; ++i) {
     const float dx = float(region.x + i) + 0.5 - planes.anchor.x;

@@ -1,16 +1,16 @@
-// What is linear on the screen over a triangle: 1 / w, and the barycentric weights over w.
+// The functions of a triangle that are linear on the screen: 1 / w, and the barycentric weights over w.
 #ifndef OITLAB_RASTER_PLANES_GLSL
 #define OITLAB_RASTER_PLANES_GLSL
 
 #include "raster/project.glsl"
 
-// A corner as the planes want it: a ScreenVertex in one word, and its number in the quad.
+// A corner of a triangle: a ScreenVertex in one word, and its number in the quad.
 struct PlaneCorner {
   vec4 vertex;
   uint number;
 };
 
-// Nearer first, then by place.
+// Orders corners by distance, then by place.
 bool comesFirst(PlaneCorner a, PlaneCorner b) {
   if (a.vertex.z != b.vertex.z) return a.vertex.z > b.vertex.z;
   if (a.vertex.x != b.vertex.x) return a.vertex.x < b.vertex.x;
@@ -26,8 +26,8 @@ void order(inout PlaneCorner a, inout PlaneCorner b) {
   b.number = swap ? c.number : b.number;
 }
 
-// Gradient of a function that is 0 at the first corner, f1 and f2 at the others; d1 and d2 lead to
-// these. One division for all gradients of a triangle.
+// Gradient of a function that is 0 at the first corner, and f1 and f2 at the others, which lie at d1 and d2 from the
+// first. overArea: 1 / (twice the area), so that all gradients of a triangle share one division.
 vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float overArea) {
   precise vec2 g;
   g.x = (f1 * d2.y - f2 * d1.y) * overArea;
@@ -35,10 +35,10 @@ vec2 gradient(vec2 d1, vec2 d2, float f1, float f2, float overArea) {
   return g;
 }
 
-// The planes of three corners that snap; the rest is left open. Puts the nearest corner first: triangles
-// on the same three points then get the same depths, in whatever order they list them. (The order of the
-// other two does not matter: it turns signs about, and roundings are symmetric.)
-ShadeTriangle regularPlanes(inout PlaneCorner first, inout PlaneCorner second, inout PlaneCorner third) {
+// The planes of three corners that snap. Sets nothing else. Puts the nearest corner first, so that triangles on the
+// same three points have the same depths, whatever the order of their corners. (The order of the other two does not
+// matter: it only changes signs, and rounding is symmetric.)
+ShadeTriangle snappedPlanes(inout PlaneCorner first, inout PlaneCorner second, inout PlaneCorner third) {
   order(first, second);
   order(first, third);
   const vec3 a = first.vertex.xyz, b = second.vertex.xyz, c = third.vertex.xyz;
@@ -50,7 +50,7 @@ ShadeTriangle regularPlanes(inout PlaneCorner first, inout PlaneCorner second, i
   t.minInvW = min(b.z, c.z);
   t.invW = a.z;
   t.weights = vec2(0.0);
-  // Thinner than rounding: the nearest corner's attributes throughout.
+  // Thinner than rounding errors: the attributes of the nearest corner everywhere.
   const bool flat_ = area == 0.0;
   precise const float overArea = 1.0 / area;
   precise const float rise1 = b.z - a.z;
@@ -61,9 +61,9 @@ ShadeTriangle regularPlanes(inout PlaneCorner first, inout PlaneCorner second, i
   return t;
 }
 
-// Of homogeneous corners, wherever they are: the inverse of the matrix (a b c) (Olano and Greer
-// 1997). `anchor`: a pixel that the triangle covers or is near.
-ShadeTriangle irregularPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor) {
+// The planes of homogeneous corners anywhere, from the inverse of the matrix (a b c) (Olano and Greer 1997). `anchor`:
+// a pixel that the triangle covers or that is near it.
+ShadeTriangle unsnappedPlanes(vec3 a, vec3 b, vec3 c, vec2 anchor) {
   a.xy -= anchor * a.z;
   b.xy -= anchor * b.z;
   c.xy -= anchor * c.z;

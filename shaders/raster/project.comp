@@ -1,6 +1,6 @@
 #version 460
-// Stage 1, before quads are set up: the vertices on the screen, one invocation each. The paper has each
-// quad do its own; here all later stages read them, in place of a record of each triangle.
+// Stage 1, before quad setup: projects the vertices, one invocation per vertex. In the paper, each quad projects its
+// own. Here all later stages read the projected vertices instead of one record per triangle.
 #include "raster/project.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;

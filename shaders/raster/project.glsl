@@ -6,8 +6,8 @@
 
 float nearPlane(mat4 viewProjection) { return viewProjection[3][2]; }
 
-// Homogeneous pixels: xy / z is the place on the screen, z the distance. The same position must come
-// to the same bits in every triangle that has it: `precise`.
+// Homogeneous pixels: xy / z is the place on the screen, z the distance. `precise`, because a position must give the
+// same bits in every triangle that has it.
 vec3 homogeneous(mat4 viewProjection, uvec2 size, vec3 position) {
   precise const vec4 clip = viewProjection * vec4(position, 1.0);
   const vec2 halfSize = 0.5 * vec2(size);
@@ -28,7 +28,7 @@ ScreenVertex toScreen(vec3 p, float near, uint normal) {
 
 bool snaps(ScreenVertex v) { return v.invW > 0.0; }
 
-// 1/256 pixel. Of vertices that snap.
+// In 1/256 pixel. Only for vertices that snap.
 ivec2 snapped(vec2 pixel) { return ivec2(roundEven(pixel * float(1 << SUBPIXEL_BITS))); }
 
 int64_t signedArea(ivec2 a, ivec2 b, ivec2 c) {
@@ -36,8 +36,8 @@ int64_t signedArea(ivec2 a, ivec2 b, ivec2 c) {
   return int64_t(u.x) * v.y - int64_t(u.y) * v.x;
 }
 
-// The cross product that 3D edge functions are made of. `precise`, so that swapping a and b swaps
-// exactly the sign, and triangles on both sides of an edge agree.
+// The cross product that defines a 3D edge function. `precise`, so that swapping a and b changes only the sign, and
+// triangles on both sides of an edge agree.
 vec3 edgePlane(vec3 a, vec3 b) {
   precise vec3 n;
   n.x = a.y * b.z - a.z * b.y;
@@ -46,12 +46,12 @@ vec3 edgePlane(vec3 a, vec3 b) {
   return n;
 }
 
-// Whether a triangle faces away, in world space as the paper has it: the eye is where the planes x, y
-// and w of the clip space meet.
+// Whether a triangle faces away, tested in world space as in the paper: the eye is the intersection of the planes x, y
+// and w of clip space.
 bool facesAway(vec3 a, vec3 b, vec3 c) { return dot(edgePlane(a, b), c) > 0.0; }
 
-// Inclusive range of pixels (x0, y0, x1, y1) whose centres a triangle may cover; empty where a first
-// exceeds its last: what falls between samples is culled by that (Laine and Karras 2011).
+// Inclusive range of pixels (x0, y0, x1, y1) whose centers a triangle may cover. It is empty if a first value exceeds
+// its last, which culls triangles that fall between samples (Laine and Karras 2011).
 const ivec4 emptyBox = ivec4(1, 1, 0, 0);
 
 bool isEmpty(ivec4 box) { return box.x > box.z || box.y > box.w; }
@@ -66,8 +66,8 @@ ivec4 snappedBox(ivec2 a, ivec2 b, ivec2 c) {
   return ivec4((low + half_ - 1) >> SUBPIXEL_BITS, (high - half_) >> SUBPIXEL_BITS);
 }
 
-// The pixels of a regular triangle on the screen.
-ivec4 regularBox(ivec2 a, ivec2 b, ivec2 c, uvec2 size) {
+// The pixels of a snapped triangle on the screen.
+ivec4 screenBox(ivec2 a, ivec2 b, ivec2 c, uvec2 size) {
   return signedArea(a, b, c) == 0 ? emptyBox : clampBox(snappedBox(a, b, c), size);
 }
 

@@ -18,30 +18,29 @@ using uvec4 = glm::uvec4;
 #define SETUP_GROUP 256u         // quads of one workgroup of setup
 #define OFFSET_GROUP 64u         // bins of one workgroup of bin_offsets
 #define LARGE_GROUP 128u         // invocations of a workgroup of bin_large
-#define PART_TRIANGLES 256u      // of a bin's list that one workgroup takes; a bin of more is "high"
+#define SEGMENT_TRIANGLES 256u   // triangles of a bin's list per workgroup; a bin with more is "high"
 #define MAX_GROUPS 65535u        // workgroups along x that every device can dispatch
 
-// A triangle is named by its slot: quad * 2 + half, half 0 having the corners 0 1 2, half 1 0 2 3. The few
-// that cannot be snapped, a vertex being nearer than the near plane or beyond the guard band, have
-// IRREGULAR | index of an IrregularTriangle.
-#define IRREGULAR 0x80000000u
+// A triangle is identified by its slot: quad * 2 + half. Half 0 has the corners 0 1 2, half 1 has 0 2 3. The few
+// triangles that cannot be snapped, because a vertex is nearer than the near plane or outside the guard band, have the
+// slot UNSNAPPED | index of an UnsnappedTriangle.
+#define UNSNAPPED 0x80000000u
 
 // Flags of a ShadeTriangle.
 #define TRIANGLE_COLORED 1u      // some corner is not white
 #define TRIANGLE_CORNER_SHIFT 1  // 3 x 2 bits: which corner of the quad weighs 1 - b1 - b2, b1, b2
 
-// Two triangles that share an edge, of the scene, 32 bytes. Like all that is read often, it travels as
-// whole words of 16 bytes (records.glsl): loads of 4 would cost a GPU four times the transactions.
+// Two triangles of the scene that share an edge, 32 bytes. Like everything that is read often, it is loaded in words
+// of 16 bytes (triangles.glsl): loads of 4 bytes would cost a GPU four times the transactions.
 struct RasterQuad {
-  uvec4 corners;  // vertices; the last two are the same where there is one triangle only
+  uvec4 corners;  // vertices; the last two are equal if there is only one triangle
   uint ids[2];    // primitive ids of its halves
   uint material;
   uint flags;     // TRIANGLE_COLORED
 };
 
-// A vertex on the screen, 16 bytes. All else that rasterization and shading need of a triangle is worked
-// out from three of these wherever it is needed: that is less to read than a record of each triangle
-// would be, since triangles share vertices, and next to nothing to store.
+// A vertex on the screen, 16 bytes. Shaders compute everything else about a triangle from three of these wherever they
+// need it. Since triangles share vertices, that is less to read than one record per triangle, and much less to store.
 struct ScreenVertex {
   vec2 pixel;   // where it is
   float invW;   // 1 / distance; if it cannot be snapped: 0 nearer than the near plane, else negative
@@ -60,9 +59,9 @@ struct RasterTriangle {
 struct ShadeTriangle {
   vec2 anchor;
   float invW;     // at the anchor
-  float minInvW;  // farthest corner; the nearest is invW. Negative: no bounds (irregular)
+  float minInvW;  // farthest corner; the nearest is invW. Negative: no bounds (unsnapped)
   vec2 invWSlope, b1Slope, b2Slope;  // per pixel right, per pixel down
-  vec2 weights;   // b1 and b2 over w at the anchor: 0 for regular triangles, whose anchor is a corner
+  vec2 weights;   // b1 and b2 over w at the anchor: 0 for snapped triangles, whose anchor is a corner
   uint normals[3];
   uint quad;
   uint id;        // primitive id
@@ -72,7 +71,7 @@ struct ShadeTriangle {
 
 // Vertices in homogeneous pixels (x / w = pixels), for the few triangles that cannot be snapped:
 // 3D rasterization (Davidovic 2012) needs no clipping. Positively oriented.
-struct IrregularTriangle {
+struct UnsnappedTriangle {
   vec3 p[3];
   ivec2 snapped[3];  // where `snaps` has a bit
   uint snaps;
@@ -87,14 +86,14 @@ struct Bin {
   uint quadCursor, triangleCursor;    // of the writing phase
 };
 
-// PART_TRIANGLES of a bin's list, or the rest of it.
-struct Part {
+// SEGMENT_TRIANGLES of a bin's list, or the rest of it.
+struct Segment {
   uint bin;
-  uint number;  // among the bin's parts
+  uint number;  // index among the bin's segments
   uint first, quads, triangles;  // the bin's list: quads from `first` on, then triangles
 };
 
-// A visible quad in few bins, all of its halves regular.
+// A visible quad in few bins. Both halves are snapped.
 struct SmallQuad {
   uint quad;
   uint bins;  // first column 12 bits, first row 12 bits, columns 4 bits, rows 4 bits
@@ -114,18 +113,18 @@ struct Dispatch {
 struct RasterCounters {
   uint smallQuads, largeQuads;  // visible; what exceeds the capacity is counted all the same
   uint largeTriangles;          // of large quads, visible
-  uint irregularSeen;           // 1: some quad may be irregular, and setup.comp passed it by
-  uint irregularTriangles;      // visible
+  uint unsnappedSeen;           // 1: some quad may be unsnapped, and setup.comp passed it by
+  uint unsnappedTriangles;      // visible
   uint visibleTriangles;
   uint culledBackFacing;        // quads
   uint visibleDegenerate;       // visible quads of one triangle
   uint entries;                 // of all bins' lists
   uint emptyBins, lowBins, highBins;
-  uint highParts;               // of all high bins
+  uint highSegments;               // of all high bins
   uint offsetGroupsDone;        // workgroups of bin_offsets.comp
   uint ready;                   // 1: nothing overflowed, the lists are complete
   Dispatch small;               // workgroups that write the lists of small quads
-  Dispatch low, high;           // one workgroup a low bin, one a part of a high bin
+  Dispatch low, high;           // one workgroup per low bin, per segment of a high bin
 };
 
 #ifndef __cplusplus
@@ -141,10 +140,10 @@ struct PackedVertex {
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer QuadBuffer { PackedQuad at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PackedVertexBuffer { PackedVertex at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ScreenVertexBuffer { vec4 at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer IrregularBuffer { IrregularTriangle at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer UnsnappedBuffer { UnsnappedTriangle at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SmallQuadBuffer { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BinBuffer { Bin at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PartBuffer { Part at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SegmentBuffer { Segment at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RasterCounterBuffer { RasterCounters c; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordBuffer { uint at[]; };
 
@@ -163,7 +162,7 @@ struct Mesh {
   ADDRESS_OF(QuadBuffer) quads;
   ADDRESS_OF(PackedVertexBuffer) vertices;  // of the scene
   ADDRESS_OF(ScreenVertexBuffer) onScreen;
-  ADDRESS_OF(IrregularBuffer) irregular;
+  ADDRESS_OF(UnsnappedBuffer) unsnapped;
 };
 
 struct RasterPush {
@@ -173,11 +172,11 @@ struct RasterPush {
   ADDRESS_OF(WordBuffer) large;     // slots of triangles in many bins
   ADDRESS_OF(BinBuffer) bins;
   ADDRESS_OF(WordBuffer) entries;   // per bin: quads, then slots of triangles
-  ADDRESS_OF(PartBuffer) parts;     // low bins from 0 up; from the number of bins up: of high bins
+  ADDRESS_OF(SegmentBuffer) segments;     // low bins from 0 up; from the number of bins up: of high bins
   ADDRESS_OF(RasterCounterBuffer) counters;
   uint quadCount, vertexCount;
   uint smallCapacity, largeCapacity;
-  uint irregularCapacity, entryCapacity;
+  uint unsnappedCapacity, entryCapacity;
   uint largeGroups;    // workgroups of bin_large
   uint backFaceCulling;
   uint countAll;       // 1: count what only the results need, too

@@ -1,36 +1,36 @@
 #version 460
-// Stage 1, quad setup (section 2): one invocation a quad. Culls what covers no sample, counts small quads
-// into their bins, and lists what is left for binning.
+// Stage 1, quad setup (section 2): one invocation per quad. Culls quads that cover no sample, counts small quads in
+// their bins, and lists the remaining quads for binning.
 //
-// The paper compacts quads between two phases of a workgroup of 1024; here only the lists are compact.
+// The paper compacts quads between two phases of a workgroup of 1024. Here only the lists are compact.
 //
-// HAS_IRREGULAR 0: quads that may be irregular are only counted, and the frame is to be recorded again.
+// HAS_UNSNAPPED 0: quads that may be unsnapped are only counted, and the frame must be recorded again.
 #include "raster/project.glsl"
-#include "raster/together.glsl"
+#include "raster/subgroup_aggregate.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };
 
-#if HAS_IRREGULAR
-#include "raster/irregular.glsl"
+#if HAS_UNSNAPPED
+#include "raster/unsnapped.glsl"
 #endif
 
 shared uint groupSmall, groupLarge, groupLargeTriangles, firstSmall, firstLarge;
 shared uint groupTriangles, groupDegenerate, groupBackFacing;
 
-// A half of a quad of which a vertex does not snap may be visible all the same: see irregular.glsl.
-bool mayBeIrregular(vec4 a, vec4 b, vec4 c, uvec2 size) {
+// Whether this half of a quad has a vertex that cannot be snapped and may be visible (see unsnapped.glsl).
+bool mayBeUnsnapped(vec4 a, vec4 b, vec4 c, uvec2 size) {
   const vec3 invW = vec3(a.z, b.z, c.z);
   if (all(greaterThan(invW, vec3(0.0)))) return false;
-  if (all(equal(invW, vec3(0.0)))) return false;  // all of it is nearer than the near plane
+  if (all(equal(invW, vec3(0.0)))) return false;  // entirely nearer than the near plane
   if (any(equal(invW, vec3(0.0)))) return true;
   const vec2 low = min(min(a.xy, b.xy), c.xy), high = max(max(a.xy, b.xy), c.xy);
   return all(greaterThan(high, vec2(-2.0))) && all(lessThan(low, vec2(size) + 2.0));
 }
 
 ivec4 boxOf(vec4 a, vec4 b, vec4 c, uvec2 size) {
-  const bool regular = min(min(a.z, b.z), c.z) > 0.0;
-  return regular ? regularBox(snapped(a.xy), snapped(b.xy), snapped(c.xy), size) : emptyBox;
+  const bool snaps = min(min(a.z, b.z), c.z) > 0.0;
+  return snaps ? screenBox(snapped(a.xy), snapped(b.xy), snapped(c.xy), size) : emptyBox;
 }
 
 bool isCulled(uvec4 corners, bool single) {
@@ -62,11 +62,11 @@ void main() {
     const bool culled = push.backFaceCulling != 0u && isCulled(corners, single);
     if (culled) {
       atomicAdd(groupBackFacing, 1u);
-    } else if (mayBeIrregular(v[0], v[1], v[2], size) || mayBeIrregular(v[0], v[2], v[3], size)) {
-#if HAS_IRREGULAR
-      setUpIrregular(quad);
+    } else if (mayBeUnsnapped(v[0], v[1], v[2], size) || mayBeUnsnapped(v[0], v[2], v[3], size)) {
+#if HAS_UNSNAPPED
+      setUpUnsnapped(quad);
 #else
-      atomicMax(push.counters.c.irregularSeen, 1u);
+      atomicMax(push.counters.c.unsnappedSeen, 1u);
 #endif
     } else {
       const ivec4 box0 = boxOf(v[0], v[1], v[2], size), box1 = boxOf(v[0], v[2], v[3], size);
@@ -108,10 +108,10 @@ void main() {
     const bool valid = small && k < extent.x * extent.y;
     if (!subgroupAny(valid)) break;
     const uint bin = (firstBin.y + k / max(extent.x, 1u)) * columns + firstBin.x + k % max(extent.x, 1u);
-    const Together t = gather(bin, valid);
+    const Aggregate t = aggregate(bin, valid);
     if (t.count > 0u) atomicAdd(push.bins.at[bin].quads, t.count);
   }
-  // What finds no room is counted all the same: the host makes room.
+  // What does not fit is counted anyway: the host allocates more.
   if (small && firstSmall + rank < push.smallCapacity)
     push.smallQuads.at[firstSmall + rank] = uvec2(quad, packBins(firstBin, extent));
   if (large) {

@@ -169,7 +169,7 @@ TEST_F(LucidOrder, RubbishInItsBuffersDoesNotShow) {
           fixture.render("lucid", {{"depth_filter", filter}, {"poison", "on"}}, camera);
       EXPECT_EQ(poisoned.hash, clean.hash) << scene.name << ", depth filter " << filter;
       EXPECT_EQ(poisoned.frame.counters.at("fragments"), clean.frame.counters.at("fragments"));
-      for (const char* name : {"irregular_triangles", "long_lists", "repaired_pixels"})
+      for (const char* name : {"unsnapped_triangles", "long_lists", "repaired_pixels"})
         used[name] += clean.frame.counters.at(name);
       used["deep fragments"] += clean.memory.contains("method: deep fragments");
     }

@@ -8,7 +8,7 @@
 namespace oitlab::testing {
 namespace {
 
-constexpr int partTriangles = PART_TRIANGLES;
+constexpr int segmentTriangles = SEGMENT_TRIANGLES;
 const Candidate lucid{"lucid"};
 
 class Lucid : public GpuTest {};
@@ -179,10 +179,10 @@ TEST_F(Lucid, CountsAreThoseWorkedOutByHand) {
   for (const auto& [name, value] : expected) EXPECT_EQ(over.at(name), value) << name;
   // A bin is high if it has more triangles than a part. Quads over five bins are large. A small
   // quad is counted as two triangles, even when it is degenerate.
-  for (const int count : {partTriangles, partTriangles + 1}) {
+  for (const int count : {segmentTriangles, segmentTriangles + 1}) {
     const Counters bins = countersOf(stack(count, 0.01f), 160, 16);
-    EXPECT_EQ(bins.at("bins_low"), count == partTriangles ? 5u : 0u);
-    EXPECT_EQ(bins.at("bins_high"), count == partTriangles ? 0u : 5u);
+    EXPECT_EQ(bins.at("bins_low"), count == segmentTriangles ? 5u : 0u);
+    EXPECT_EQ(bins.at("bins_high"), count == segmentTriangles ? 0u : 5u);
   }
   // One quad inside the upper left of four bins, and another one behind the eye.
   const Scene one = triangleScene({{glm::vec3{-0.9f, 0.2f, 0}, {-0.2f, 0.2f, 0}, {-0.9f, 0.9f, 0}},
@@ -194,7 +194,7 @@ TEST_F(Lucid, CountsAreThoseWorkedOutByHand) {
   EXPECT_EQ(corner.at("small_quads"), 1u);
   EXPECT_EQ(corner.at("bins_empty"), 3u);
   EXPECT_EQ(corner.at("bin_entries"), 1u);
-  EXPECT_EQ(corner.at("irregular_triangles"), 0u);
+  EXPECT_EQ(corner.at("unsnapped_triangles"), 0u);
 }
 
 TEST_F(Lucid, CullingBackFacesDropsTheQuadsThatItCounts) {

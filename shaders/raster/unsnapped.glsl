@@ -1,12 +1,12 @@
-// Quads of which a vertex cannot be snapped. 3D rasterization needs no clipping, but everything else about
-// such triangles differs. They are few, and binned as large. The including shader declares `push`.
-#ifndef OITLAB_RASTER_IRREGULAR_GLSL
-#define OITLAB_RASTER_IRREGULAR_GLSL
+// Quads with a vertex that cannot be snapped. 3D rasterization needs no clipping, but everything else about such
+// triangles differs. They are few, and are binned like large triangles. The includer declares `push`.
+#ifndef OITLAB_RASTER_UNSNAPPED_GLSL
+#define OITLAB_RASTER_UNSNAPPED_GLSL
 
-#include "raster/records.glsl"
+#include "raster/triangles.glsl"
 
-// Bounds of the part in front of the near plane (Blinn 1996), a pixel wider for rounding.
-ivec4 irregularBox(vec3 p[3], float near, uvec2 size) {
+// Bounds of what lies behind the near plane as seen from the eye (Blinn 1996), one pixel wider for rounding errors.
+ivec4 unsnappedBox(vec3 p[3], float near, uvec2 size) {
   vec2 low = vec2(1e30), high = vec2(-1e30);
   for (int i = 0; i < 3; ++i) {
     const vec3 a = p[i], b = p[i == 2 ? 0 : i + 1];
@@ -32,7 +32,7 @@ void addLarge(uint slot) {
   if (push.countAll != 0u) atomicAdd(push.counters.c.visibleTriangles, 1u);
 }
 
-// Lists the triangle if it is visible, and returns whether.
+// Lists the triangle if it is visible. Returns whether it is.
 bool setUpHalf(uint slot, PackedQuad quad) {
   const uvec2 size = push.frame.c.size;
   const float near = nearPlane(push.frame.c.viewProjection);
@@ -44,34 +44,34 @@ bool setUpHalf(uint slot, PackedQuad quad) {
     v[i] = loadVertex(push.mesh, vertices[i]);
   }
   if (snaps(v[0]) && snaps(v[1]) && snaps(v[2])) {
-    const bool visible = !isEmpty(regularBox(snapped(v[0].pixel), snapped(v[1].pixel), snapped(v[2].pixel), size));
+    const bool visible = !isEmpty(screenBox(snapped(v[0].pixel), snapped(v[1].pixel), snapped(v[2].pixel), size));
     if (visible) addLarge(slot);
     return visible;
   }
   const float facing = dot(edgePlane(p[0], p[1]), p[2]);
-  const ivec4 box = facing == 0.0 ? emptyBox : irregularBox(p, near, size);
+  const ivec4 box = facing == 0.0 ? emptyBox : unsnappedBox(p, near, size);
   if (isEmpty(box)) return false;
-  const uint index = atomicAdd(push.counters.c.irregularTriangles, 1u);
-  if (index >= push.irregularCapacity) return true;  // counted: the host makes room
-  addLarge(IRREGULAR | index);
-  const bool turned = facing < 0.0;
-  const vec3 p1 = turned ? p[2] : p[1], p2 = turned ? p[1] : p[2];
-  const ScreenVertex v0 = v[0], v1 = turned ? v[2] : v[1], v2 = turned ? v[1] : v[2];
-  IrregularTriangle t;
-  // The anchor lies amid the visible part: farther away it would cost precision.
-  t.shading = irregularPlanes(p[0], p[1], p[2], vec2((box.xy + box.zw) / 2) + 0.5);
-  describe(t.shading, slot, quad, cornersOf(slot), uvec3(v[0].normal, v[1].normal, v[2].normal));
+  const uint index = atomicAdd(push.counters.c.unsnappedTriangles, 1u);
+  if (index >= push.unsnappedCapacity) return true;  // counted anyway: the host allocates more
+  addLarge(UNSNAPPED | index);
+  const bool flipped = facing < 0.0;
+  const vec3 p1 = flipped ? p[2] : p[1], p2 = flipped ? p[1] : p[2];
+  const ScreenVertex v0 = v[0], v1 = flipped ? v[2] : v[1], v2 = flipped ? v[1] : v[2];
+  UnsnappedTriangle t;
+  // The anchor is in the middle of what is visible, for precision.
+  t.shading = unsnappedPlanes(p[0], p[1], p[2], vec2((box.xy + box.zw) / 2) + 0.5);
+  fillAttributes(t.shading, slot, quad, cornersOf(slot), uvec3(v[0].normal, v[1].normal, v[2].normal));
   t.p = vec3[3](p[0], p1, p2);
   t.snapped = ivec2[3](snapped(v0.pixel), snapped(v1.pixel), snapped(v2.pixel));
   t.snaps = uint(snaps(v0)) | uint(snaps(v1)) << 1 | uint(snaps(v2)) << 2;
   const uvec4 bins = uvec4(box) / BIN_SIZE;
   t.firstBin = bins.x | bins.y << 16;
   t.lastBin = bins.z | bins.w << 16;
-  push.mesh.irregular.at[index] = t;
+  push.mesh.unsnapped.at[index] = t;
   return true;
 }
 
-void setUpIrregular(uint number) {
+void setUpUnsnapped(uint number) {
   const PackedQuad quad = push.mesh.quads.at[number];
   const bool single = quad.corners.z == quad.corners.w;
   const bool visible0 = setUpHalf(2u * number, quad);
