@@ -95,8 +95,9 @@ def lines_of(section: Section, curve: Curve) -> list[Line]:
     same = {*x.columns, "content_hash"} | ({"detail"} if curve.x == "triangles" else set())
     setting = [name for name in SETTING if name not in same]
     parameters = [name for name in table.columns if name.startswith("param.") and name not in same]
-    groups = [cells for _, cells in table.groupby([*setting, "method", *parameters], sort=False, dropna=False)
-              if cells["x"].nunique() > 1]
+    keys = [*setting, "method", *parameters]
+    several = table.groupby(keys, dropna=False)["x"].transform("nunique") > 1
+    groups = [cells for _, cells in table[several].groupby(keys, sort=False, dropna=False)]
     firsts = [records(cells.head(1))[0] for cells in groups]
     panels = [_panel(first, curve) for first in firsts]
     said = _names(firsts, panels, setting)

@@ -109,15 +109,14 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
     usual = baselines["method"].mode().iloc[0]
     settings = set(baselines.loc[baselines["method"] == usual, "setting"])
     table = table[table["setting"].isin(settings)]
-    rows = []
-    for label, cells in table.groupby("label"):
-        if set(cells["setting"]) >= settings:
-            ratios = cells["ratio"].to_numpy(dtype=float)
-            low, high = numpy.quantile(ratios, [0.25, 0.75])
-            rows.append((label, cells["method"].iloc[0], cells["error"].mean(),
-                         float(numpy.exp(numpy.log(ratios).mean())), low, high, len(settings)))
-    return pandas.DataFrame(
-        rows, columns=["label", "method", "error", "ratio", "low", "high", "settings"])
+    table = table[["label", "method", "setting", "error", "ratio"]].assign(
+        ratio=table["ratio"].astype(float), log=numpy.log(table["ratio"].astype(float)))
+    table = table[table.groupby("label")["setting"].transform("nunique") == len(settings)]
+    groups = table.groupby("label")
+    return pandas.DataFrame({
+        "method": groups["method"].first(), "error": groups["error"].mean(),
+        "ratio": numpy.exp(groups["log"].mean()), "low": groups["ratio"].quantile(0.25),
+        "high": groups["ratio"].quantile(0.75), "settings": len(settings)}).reset_index()
 
 
 def settings_in(section: Section, metric: Metric) -> int:
