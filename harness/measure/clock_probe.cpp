@@ -44,7 +44,7 @@ std::optional<double> ClockProbe::run() {
     // From [0, 1) towards 1: no value is large, none denormal.
     pipeline_.bind(commands_, nullptr,
                    ClockProbePush{.result = result_.address(),
-                                  .turns = turns_,
+                                  .iterations = turns_,
                                   .factor = 0.999f,
                                   .summand = 0.001f,
                                   .threshold = 2.0f});
