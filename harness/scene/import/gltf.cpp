@@ -237,12 +237,14 @@ void addNodes(const GltfFile& file, const std::vector<GltfMaterial>& materials, 
 }  // namespace
 
 void findGltfFiles(const std::filesystem::path& path, SceneFolder& folder) {
-  GltfFile file{.path = path.string()};
+  SceneBudget budget(path.string());
+  GltfFile file{.path = path.string(), .budget = budget, .model = {}};
   parse(path, folder, file);
 }
 
 Scene loadGltf(const std::filesystem::path& path, bool allowOutside) {
-  GltfFile file{.path = path.string()};
+  SceneBudget budget(path.string());
+  GltfFile file{.path = path.string(), .budget = budget, .model = {}};
   SceneFolder folder(path, allowOutside);
   parse(path, folder, file);
   Scene scene;

@@ -95,6 +95,9 @@ std::vector<int> readTextures(const GltfFile& file, Scene& scene) {
   std::ranges::sort(used);
   used.erase(std::ranges::unique(used).begin(), used.end());
 
+  for (const std::size_t image : used)
+    file.budget.addTexels(countTexels(encodedImage(file, images[image])),
+                          fmt::format("image {} '{}'", image, images[image].name));
   std::vector<Texture> decoded(used.size());
   std::vector<char> good(used.size());
   parallelFor(used.size(), [&](std::size_t i) {

@@ -108,6 +108,10 @@ void readGltfPrimitive(const GltfFile& file, const tinygltf::Primitive& primitiv
   std::vector<glm::uvec3> triangles = assemble(indices, mode);
   if (scene.vertices.size() + 3 * triangles.size() >= notYet)
     fail<InputError>("{}: more vertices than 32 bits can number", place);
+  // With normals at most those there are; without, three for each triangle.
+  const std::size_t most = 3 * triangles.size();
+  file.budget.addVertices(from.normal ? std::min(most, count) : most, triangles.size(),
+                          "this primitive");
 
   std::vector<glm::vec3> positions(count);
   for (std::size_t i = 0; i < count; ++i)

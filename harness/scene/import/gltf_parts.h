@@ -9,13 +9,15 @@
 #include <tiny_gltf.h>
 #include <glm/glm.hpp>
 
+#include "scene/import/budget.h"
 #include "scene/scene.h"
 
 namespace oitlab {
 
 /// A file being read.
 struct GltfFile {
-  std::string path;  ///< for messages
+  std::string path;     ///< for messages
+  SceneBudget& budget;  ///< asked before what the file wants is allocated
   tinygltf::Model model;
 };
 

@@ -97,8 +97,8 @@ struct CornerHash {
 
 class Reader {
  public:
-  Reader(Scene& scene, LineBuffer& lines, SceneFolder& folder)
-      : scene_(scene), lines_(lines), materials_(scene, folder) {}
+  Reader(Scene& scene, LineBuffer& lines, SceneFolder& folder, SceneBudget& budget)
+      : scene_(scene), lines_(lines), budget_(budget), materials_(scene, folder, budget) {}
 
   void addPosition(glm::vec3 p) {
     positions_.push_back(lines_.finite() ? p : glm::vec3(std::nanf("")));
@@ -150,6 +150,7 @@ class Reader {
     const glm::dvec3 cross =
         glm::cross(glm::dvec3(q) - glm::dvec3(p), glm::dvec3(r) - glm::dvec3(p));
     const double length = glm::length(cross);
+    budget_.addVertices(0, 1, "this file");
     const glm::vec3 flat = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0, 1, 0);
     scene_.triangles.emplace_back(vertex(a, flat), vertex(b, flat), vertex(c, flat));
   }
@@ -170,6 +171,7 @@ class Reader {
     }
     const glm::vec2 uv = corner.uv >= 0 ? uvs_[std::size_t(corner.uv)] : glm::vec2(0.0f);
     const auto result = std::uint32_t(scene_.vertices.size());
+    budget_.addVertices(1, 0, "this file");
     scene_.vertices.push_back(
         {at(corner), packNormal(normal), {uv.x, 1.0f - uv.y}, 0xffffffffu, *material_});
     if (corner.normal >= 0) known_.emplace(corner, result);
@@ -178,6 +180,7 @@ class Reader {
 
   Scene& scene_;
   LineBuffer& lines_;
+  SceneBudget& budget_;
   ObjMaterials materials_;
   std::vector<glm::vec3> positions_, normals_;
   std::vector<glm::vec2> uvs_;
@@ -226,7 +229,8 @@ Scene loadObj(const std::filesystem::path& path, bool allowOutside) {
   Scene scene;
   scene.name = path.stem().string();
   LineBuffer lines(stream, path.string());
-  Reader state(scene, lines, folder);
+  SceneBudget budget(path.string());
+  Reader state(scene, lines, folder, budget);
   Libraries libraries(state);
   tinyobj::callback_t calls;
   calls.vertex_cb = [](void* to, float x, float y, float z, float) {

@@ -54,8 +54,8 @@ int ObjMaterials::readTextures(const std::string& color, const std::string& alph
   const auto [known, fresh] = textures_.try_emplace(color + "\n" + alpha, -1);
   if (!fresh) return known->second;
   Texture texture, mask;
-  const bool hasColor = !color.empty() && readTexture(folder_.find(color), texture);
-  const bool hasMask = !alpha.empty() && readTexture(folder_.find(alpha), mask);
+  const bool hasColor = !color.empty() && readTexture(folder_.find(color), texture, budget_);
+  const bool hasMask = !alpha.empty() && readTexture(folder_.find(alpha), mask, budget_);
   scene_.repaired(
       "textures left out, which are missing or unreadable",
       std::uint64_t(!color.empty() && !hasColor) + std::uint64_t(!alpha.empty() && !hasMask));

@@ -9,6 +9,7 @@
 
 #include <tiny_obj_loader.h>
 
+#include "scene/import/budget.h"
 #include "scene/import/scene_folder.h"
 #include "scene/scene.h"
 
@@ -31,8 +32,9 @@ ObjLibrary readObjLibrary(const std::string& name, SceneFolder& folder);
 /// The materials of an OBJ file's libraries. They are added to the scene when they are read.
 class ObjMaterials {
  public:
-  /// Both must outlive this.
-  ObjMaterials(Scene& scene, SceneFolder& folder) : scene_(scene), folder_(folder) {}
+  /// All must outlive this.
+  ObjMaterials(Scene& scene, SceneFolder& folder, SceneBudget& budget)
+      : scene_(scene), folder_(folder), budget_(budget) {}
 
   /// Reads a library. One that is missing or invalid is a repair.
   void readLibrary(const std::string& name);
@@ -46,6 +48,7 @@ class ObjMaterials {
 
   Scene& scene_;
   SceneFolder& folder_;
+  SceneBudget& budget_;
   std::map<std::string, std::uint32_t> byName_;
   std::map<std::string, int> textures_;  // by the names of both files
 };
