@@ -10,7 +10,15 @@ namespace oitlab {
 using Action = std::function<int()>;
 
 /// Exit codes (docs/design.md, "Errors").
-enum ExitCode { exitDone = 0, exitSomeFailed = 1, exitBadInput = 2, exitNoDevice = 3 };
+enum ExitCode {
+  exitDone = 0,
+  exitSomeFailed = 1,
+  exitBadInput = 2,
+  exitNoDevice = 3,
+  exitCannotWrite = 4,
+  exitInternal = 5,
+  exitSignal = 128  ///< plus the signal's number
+};
 
 // Each function adds a verb to the program, and sets `action` if the verb is given.
 void addInfo(CLI::App& program, Action& action);

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "experiment/describe.h"
+#include "results/describe.h"
 #include "util/json_file.h"
 
 namespace oitlab {

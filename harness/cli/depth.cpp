@@ -1,8 +1,8 @@
 #include "cli/commands.h"
 #include "cli/device_options.h"
-#include "experiment/describe.h"
 #include "quality/compare.h"
 #include "render/depth_complexity.h"
+#include "results/describe.h"
 #include "util/error.h"
 #include "util/json_file.h"
 #include "util/python.h"
@@ -97,7 +97,7 @@ int depth(const DepthOptions& options) {
                      {"transparent_triangles", gpuScene.transparentCount()}};
   result["view"] = options.view;
   result["camera"] = describeCamera(camera);
-  result["provenance"] = describeProvenance(device, "depth");
+  result["provenance"] = describeProvenance(device.validation(), device.shaders().hashes());
 
   if (!options.out.empty()) {
     const Plane<float> plane = depthPlane(counted);

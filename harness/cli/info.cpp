@@ -1,6 +1,6 @@
 #include "cli/commands.h"
-#include "experiment/describe.h"
 #include "method/method.h"
+#include "results/describe.h"
 #include "util/json_file.h"
 
 namespace oitlab {

@@ -1,5 +1,5 @@
 #include "cli/commands.h"
-#include "experiment/describe.h"
+#include "results/describe.h"
 #include "util/error.h"
 #include "util/suggest.h"
 #include "util/version.h"
@@ -36,7 +36,8 @@ int runProgram(int argc, char** argv) {
       "  oitlab list methods\n"
       "  oitlab render --scene boxes --method reference --out boxes.png\n"
       "  oitlab run experiments/quickstart.toml && oitlab report results/quickstart\n"
-      "Exit codes: 0 done, 1 some cells failed, 2 bad input, 3 no usable Vulkan device.");
+      "Exit codes: 0 done, 1 some cells failed, 2 bad input, 3 no usable Vulkan device,\n"
+      "4 results cannot be written, 5 a mistake of oitlab's own, 130 and 143 stopped by a signal.");
   Action action;
   addInfo(program, action);
   addList(program, action);
@@ -62,9 +63,20 @@ int runProgram(int argc, char** argv) {
   } catch (const DeviceError& error) {
     fmt::print(stderr, "oitlab: {}\n", error.what());
     return exitNoDevice;
+  } catch (const OutputError& error) {
+    fmt::print(stderr,
+               "oitlab: {}; what was there is as it was, and the same command goes on from there\n",
+               error.what());
+    return exitCannotWrite;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "oitlab: not enough main memory\n");
     return exitBadInput;
+  } catch (const vk::SystemError& error) {
+    fmt::print(stderr, "oitlab: the Vulkan driver failed: {}\n", error.what());
+    return exitNoDevice;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "oitlab: a mistake of oitlab's own: {}; please report it\n", error.what());
+    return exitInternal;
   }
 }
 

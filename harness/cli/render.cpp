@@ -1,8 +1,8 @@
 #include "cli/commands.h"
 #include "cli/device_options.h"
-#include "experiment/describe.h"
 #include "image/hash.h"
 #include "measure/statistics.h"
+#include "results/describe.h"
 #include "util/error.h"
 #include "util/json_file.h"
 #include "util/size.h"
@@ -99,7 +99,7 @@ int render(const RenderOptions& options) {
       {"memory_bytes", describeMemory(renderer, *method)},
       {"image_hash", imageHash(bytes)},
       {"image", out.empty() ? nlohmann::json() : nlohmann::json(out)},
-      {"provenance", describeProvenance(device, info.name)},
+      {"provenance", describeProvenance(device.validation(), device.shaders().hashes())},
   };
   if (options.json) {
     fmt::print("{}\n", jsonText(result));

@@ -1,7 +1,11 @@
-#include "experiment/run.h"
+#include <csignal>
+
 #include "cli/commands.h"
 #include "cli/device_options.h"
+#include "experiment/plan.h"
+#include "sweep/run.h"
 #include "util/error.h"
+#include "util/interrupt.h"
 #include "util/size.h"
 
 namespace oitlab {
@@ -10,9 +14,8 @@ namespace {
 struct RunOptions {
   std::string file, results, shard = "1/1", profile = "auto", size;
   float detail = 0;  // 0: as the file says
-  double stopAfter = std::numeric_limits<double>::infinity();
   bool dryRun = false;
-  Device::Options device;
+  SweepOptions sweep;
 };
 
 /// The device that these options choose, without opening it.
@@ -35,50 +38,87 @@ ExperimentOptions readOptions(const RunOptions& options, const DeviceInfo& devic
   return read;
 }
 
-int dryRun(const Experiment& experiment, const std::vector<CellSpec>& cells,
-           const std::filesystem::path& results, const DeviceInfo& device) {
-  std::size_t present = 0;
-  for (const CellSpec& cell : cells) {
-    const std::string id = cellId(cell, device);
-    const bool there = std::filesystem::exists(results / "cells" / (id + ".json"));
-    present += there;
-    fmt::print("{}  {}\n", there ? "there  " : "missing", cell.label());
+const char* nameOf(const SweepForecast::Line& line) {
+  if (!line.again) return "there  ";
+  return line.state.kind == CellState::missing ? "missing" : "again  ";
+}
+
+int dryRun(const SweepOptions& options, const Experiment& experiment,
+           const std::vector<CellSpec>& cells, const std::filesystem::path& results,
+           const DeviceInfo& device) {
+  const SweepForecast found = forecast(options, device, experiment, cells, results);
+  for (const SweepForecast::Line& line : found.lines) {
+    fmt::print("{}  {}\n", nameOf(line), line.cell.label());
+    if (!line.state.reason.empty()) fmt::print("         {}\n", line.state.reason);
   }
-  const double most =
-      experiment.measure.stop.timeLimitSeconds * 1.3 * double(cells.size() - present);
-  fmt::print(stderr, "{} cells on {}, {} there already, {} to measure: about {:.0f} s at most\n",
-             cells.size(), device.name, present, cells.size() - present, most);
+  fmt::print(stderr, "{} cells on {}, {} there already, {} to measure: about {}\n", cells.size(),
+             device.name, cells.size() - found.toMeasure, found.toMeasure,
+             formatSeconds(found.seconds));
   return exitDone;
+}
+
+/// What a run is to be followed by, if anything.
+void tell(const SweepSummary& summary, const RunOptions& options,
+          const std::filesystem::path& results) {
+  const Outcome& outcome = summary.outcome;
+  fmt::print(stderr,
+             "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
+             outcome.done, summary.present, outcome.failed, outcome.skipped, results.string());
+  if (summary.left > 0)
+    fmt::print(stderr, "{} not begun when {} s were over: the same command measures them\n",
+               summary.left, options.sweep.seconds);
+  for (const std::string& line : summary.kept) fmt::print(stderr, "kept: {}\n", line);
+  if (outcome.withMessages > 0)
+    fmt::print(stderr,
+               "the validation layers had something to say about {} cells: validation_messages in "
+               "their files\n",
+               outcome.withMessages);
+}
+
+/// The cells of the shard; says so where there are none.
+std::vector<CellSpec> dealCells(const Experiment& experiment, const Shard& shard) {
+  const auto cells = shardCells(experiment.cells, shard);
+  if (cells.empty() && !experiment.cells.empty())
+    fmt::print(
+        stderr,
+        "--shard {}/{}: nothing to do: there are {} groups of cells, and a group (one scene, "
+        "view, size and format) stays together\n",
+        shard.index, shard.count, groupCells(experiment.cells).size());
+  return cells;
+}
+
+int measure(const Experiment& experiment, const std::vector<CellSpec>& cells,
+            const std::filesystem::path& results, const DeviceInfo& device,
+            const RunOptions& options) {
+  fmt::print(stderr, "{}: {} cells on {}, profile {}\n", experiment.title, cells.size(),
+             device.name, experiment.profile);
+  const InterruptGuard guard;
+  try {
+    const SweepSummary summary = runExperiment(options.sweep, experiment, cells, results);
+    tell(summary, options, results);
+    return summary.outcome.failed + summary.outcome.withMessages > 0 ? exitSomeFailed : exitDone;
+  } catch (const Interrupted& interrupted) {
+    fmt::print(stderr,
+               "\nstopped by {}: the cells being measured are dropped, all others are in {}; the "
+               "same command goes on from there\n",
+               interrupted.signal == SIGINT ? "SIGINT" : "SIGTERM", results.string());
+    return exitSignal + interrupted.signal;
+  }
 }
 
 int run(const RunOptions& options) {
   readExperiment(options.file);  // mistakes are told before a device is looked for
-  parseShard(options.shard);
-  const DeviceInfo info = chosenDevice(options.device);
+  const Shard shard = parseShard(options.shard);
+  const DeviceInfo info = chosenDevice(options.sweep.device);
   const Experiment experiment = readExperiment(options.file, readOptions(options, info));
   const std::filesystem::path results = options.results.empty()
                                             ? std::filesystem::path("results") / experiment.name
                                             : std::filesystem::path(options.results);
-  const auto cells = shardCells(experiment.cells, parseShard(options.shard));
   for (const std::string& note : experiment.notes) fmt::print(stderr, "{}\n", note);
-  if (options.dryRun) return dryRun(experiment, cells, results, info);
-
-  const Device device(options.device);
-  fmt::print(stderr, "{}: {} cells on {}, profile {}\n", experiment.title, cells.size(), info.name,
-             experiment.profile);
-  const RunSummary summary = runExperiment(device, experiment, cells, results, options.stopAfter);
-  fmt::print(stderr,
-             "{} measured, {} there before, {} failed, {} skipped; `oitlab report {}` shows them\n",
-             summary.done, summary.present, summary.failed, summary.skipped, results.string());
-  if (summary.left > 0)
-    fmt::print(stderr, "{} not begun when {} s were over: the same command measures them\n",
-               summary.left, options.stopAfter);
-  if (summary.otherVersion > 0)
-    fmt::print(stderr,
-               "{} of the cells there before were made by another commit of oitlab; remove {} to "
-               "measure all again\n",
-               summary.otherVersion, (results / "cells").string());
-  return summary.failed > 0 ? exitSomeFailed : exitDone;
+  const auto cells = dealCells(experiment, shard);
+  if (cells.empty()) return exitDone;
+  return options.dryRun ? dryRun(options.sweep, experiment, cells, results, info)
+                        : measure(experiment, cells, results, info, options);
 }
 
 }  // namespace
@@ -92,7 +132,7 @@ void addRun(CLI::App& program, Action& action) {
   verb->add_option("--results", options->results, "Results folder (default: results/NAME)")
       ->type_name("DIR");
   verb->add_option("--shard", options->shard,
-                   "Only the i-th of n shares; several may share a folder")
+                   "Only the i-th of n shares of the groups, for machines without a common folder")
       ->capture_default_str()
       ->type_name("I/N");
   verb->add_option("--profile", options->profile,
@@ -108,13 +148,17 @@ void addRun(CLI::App& program, Action& action) {
         return parseSize(text) ? "" : fmt::format("{}: wanted WxH, such as 1280x720", text);
       })
       ->type_name("WxH");
-  verb->add_option("--stop-after", options->stopAfter,
+  verb->add_option("--stop-after", options->sweep.seconds,
                    "Begin nothing after so many seconds, where a job's time is limited; the same "
                    "command goes on from there")
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
-  verb->add_flag("--dry-run", options->dryRun, "List the cells and measure nothing");
-  addDeviceOptions(*verb, options->device);
+  verb->add_flag("--keep", options->sweep.keep,
+                 "Leave cells as they are that were measured with another profile, [measure], "
+                 "shader or program, and name them");
+  verb->add_flag("--dry-run", options->dryRun,
+                 "List the cells and how long they would take; measure nothing");
+  addDeviceOptions(*verb, options->sweep.device);
   verb->callback([=, &action] { action = [=] { return run(*options); }; });
 }
 

@@ -1,5 +1,5 @@
 #include "cli/commands.h"
-#include "experiment/describe.h"
+#include "results/describe.h"
 #include "scene/coverage.h"
 #include "scene/quads.h"
 #include "util/error.h"

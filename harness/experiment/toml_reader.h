@@ -26,8 +26,21 @@ class TomlTable {
   T value(const std::string& key, T fallback) {
     const toml::node* node = find(key);
     if (node == nullptr) return fallback;
-    if (const auto found = node->value<T>()) return *found;
+    // value() of toml++ turns true into 1 and 1 into true: those are mistakes.
+    const bool right =
+        std::is_same_v<T, double> ? node->is_number() : node->value_exact<T>().has_value();
+    if (const auto found = node->value<T>(); right && found) return *found;
     failAt(*node, fmt::format("'{}' must be {}, found {}", key, wanted<T>(), describe(*node)));
+  }
+
+  /// A whole number within [min, max].
+  std::int64_t whole(const std::string& key, std::int64_t fallback, std::int64_t min,
+                     std::int64_t max) {
+    const std::int64_t found = value<std::int64_t>(key, fallback);
+    if (found < min || found > max)
+      failAt(*table_.get(key),
+             fmt::format("'{}' is {}, out of range: {} to {}", key, found, min, max));
+    return found;
   }
 
   /// A number within [min, max].

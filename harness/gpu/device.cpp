@@ -175,6 +175,17 @@ Device::~Device() {
   }
 }
 
+bool Device::isLost() const {
+  try {
+    device_.waitIdle();
+  } catch (const vk::DeviceLostError&) {
+    return true;
+  } catch (const vk::SystemError&) {
+    // Out of memory, say: not a loss.
+  }
+  return false;
+}
+
 std::uint32_t Device::memoryType(std::uint32_t typeBits, vk::MemoryPropertyFlags wanted,
                                  vk::MemoryPropertyFlags preferred) const {
   for (const vk::MemoryPropertyFlags flags : {wanted | preferred, wanted})

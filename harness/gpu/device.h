@@ -96,6 +96,9 @@ class Device {
   /// Warnings and errors of the validation layer so far. A clean run has none.
   std::vector<std::string> validationMessages() const { return instance_.validationMessages(); }
 
+  /// Whether the device has stopped working. Waits for the work that it still has.
+  bool isLost() const;
+
   /// Whether the CPU can map device-local memory.
   bool canMapItsMemory() const;
 

@@ -107,6 +107,18 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
   }
 }
 
+std::string definitionLines(const Defines& defines) {
+  std::string lines;
+  for (const auto& [name, value] : defines) lines += fmt::format("#define {} {}\n", name, value);
+  return lines;
+}
+
+std::string labelOf(const std::string& path, const Defines& defines) {
+  std::string label = path;
+  for (const auto& [name, value] : defines) label += fmt::format(" {}={}", name, value);
+  return label;
+}
+
 }  // namespace
 
 ShaderLibrary::ShaderLibrary(bool shaderPrintf)
@@ -120,19 +132,33 @@ ShaderLibrary::ShaderLibrary(bool shaderPrintf)
                      root_.string());
 }
 
-std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const Defines& defines) {
-  std::string definitions;
-  for (const auto& [name, value] : defines)
-    definitions += fmt::format("#define {} {}\n", name, value);
-  std::string everything = path + "\n" + preamble_ + definitions;
+std::string ShaderLibrary::hash(const std::string& path, const Defines& defines) const {
+  std::string everything = path + "\n" + preamble_ + definitionLines(defines);
   const auto version = glslang::GetVersion();
   everything += fmt::format("glslang {}.{}.{}\n", version.major, version.minor, version.patch);
   std::set<std::string> seen;
   collect(root_, root_ / path, seen, everything);
-  const std::string hash = imageHash(std::as_bytes(std::span(everything)));
-  std::string label = path;
-  for (const auto& [name, value] : defines) label += fmt::format(" {}={}", name, value);
+  return imageHash(std::as_bytes(std::span(everything)));
+}
+
+std::string ShaderLibrary::hash(const std::string& label) const {
+  std::istringstream words(label);
+  std::string path, definition;
+  words >> path;
+  Defines defines;
+  while (words >> definition) {
+    const auto equals = definition.find('=');
+    if (equals == std::string::npos) fail<InputError>("'{}' is no shader's label", label);
+    defines[definition.substr(0, equals)] = definition.substr(equals + 1);
+  }
+  return hash(path, defines);
+}
+
+std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const Defines& defines) {
+  const std::string hash = this->hash(path, defines);
+  const std::string label = labelOf(path, defines);
   hashes_[label] = hash;
+  if (recorded_ != nullptr) (*recorded_)[label] = hash;
 
   const auto cached = cache_ / (hash + ".spv");
   if (const auto bytes = readCached(cached, hash); bytes && bytes->size() % 4 == 0) {
@@ -140,7 +166,7 @@ std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const
     std::memcpy(words.data(), bytes->data(), bytes->size());
     return words;
   }
-  std::vector<std::uint32_t> words = compileAnew(path, preamble_ + definitions, label);
+  std::vector<std::uint32_t> words = compileAnew(path, preamble_ + definitionLines(defines), label);
   writeCached(cached, hash,
               {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
   return words;

@@ -26,10 +26,34 @@ class ShaderLibrary {
   /// compile.
   std::vector<std::uint32_t> compile(const std::string& path, const Defines& defines = {});
 
-  /// Content hashes of the variants that were compiled so far, by path and definitions.
-  const std::map<std::string, std::string>& hashes() const { return hashes_; }
+  /// Content hashes of variants by label, "lucid/blocks.comp PASS=1 SIZE=8": path and definitions.
+  using Hashes = std::map<std::string, std::string>;
+
+  /// The variants compiled so far.
+  const Hashes& hashes() const { return hashes_; }
+
+  /// The content hash of the variant with this label as its files are now. Throws InputError where
+  /// a file is missing.
+  std::string hash(const std::string& label) const;
+
+  /// While it lives, all that is compiled is also added to `into`: what one method uses, of all
+  /// that a process compiles. One at a time.
+  class Recording {
+   public:
+    Recording(ShaderLibrary& library, Hashes& into) : library_(library) {
+      library_.recorded_ = &into;
+    }
+    ~Recording() { library_.recorded_ = nullptr; }
+    Recording(const Recording&) = delete;
+    Recording& operator=(const Recording&) = delete;
+
+   private:
+    ShaderLibrary& library_;
+  };
 
  private:
+  std::string hash(const std::string& path, const Defines& defines) const;
+
   /// `head` precedes the text; `label` names the variant in messages.
   std::vector<std::uint32_t> compileAnew(const std::string& path, const std::string& head,
                                          const std::string& label) const;
@@ -37,7 +61,8 @@ class ShaderLibrary {
   std::filesystem::path root_;
   std::filesystem::path cache_;
   std::string preamble_;
-  std::map<std::string, std::string> hashes_;
+  Hashes hashes_;
+  Hashes* recorded_ = nullptr;
 };
 
 }  // namespace oitlab

@@ -1,6 +1,7 @@
 #include "measure/measure.h"
 
 #include "util/error.h"
+#include "util/interrupt.h"
 #include "util/random.h"
 
 namespace oitlab {
@@ -20,6 +21,7 @@ struct Bench {
   ClockWatch* clock;
 
   FrameResult render(Method& method, bool instrumented = false) const {
+    checkInterrupt();
     return renderer.render(method, camera, instrumented);
   }
   double settle() const { return clock ? clock->settle() : 0; }
@@ -139,12 +141,24 @@ void finishSubject(const Bench& bench, Subject& subject) {
   if (bench.clock) result.clock = describeClock(*bench.clock, subject, stagesSettled);
 }
 
+std::size_t messageCount(const Device& device) {
+  return device.validation() ? device.validationMessages().size() : 0;
+}
+
+std::vector<MeasureProgress> progressOf(const std::vector<Subject>& subjects) {
+  std::vector<MeasureProgress> progress;
+  for (const Subject& subject : subjects)
+    progress.push_back({subject.result.blocks, subject.result.seconds, subject.finished});
+  return progress;
+}
+
 }  // namespace
 
-void measureInterleaved(Renderer& renderer, const Camera& camera,
-                        const std::vector<Method*>& methods, const MeasureSettings& settings,
-                        ClockWatch* clock,
-                        const std::function<void(std::size_t, Measurement)>& done) {
+void measureInterleaved(
+    Renderer& renderer, const Camera& camera, const std::vector<Method*>& methods,
+    const MeasureSettings& settings, ClockWatch* clock,
+    const std::function<void(std::size_t, Measurement)>& done,
+    const std::function<void(const std::vector<MeasureProgress>&)>& afterBlock) {
   const Bench bench{renderer, camera, settings, clock};
   std::vector<Subject> subjects;
   for (Method* method : methods) subjects.push_back({method, StopRule(settings.stop), {}});
@@ -152,12 +166,24 @@ void measureInterleaved(Renderer& renderer, const Camera& camera,
 
   auto guarded = [&](std::size_t i, auto&& step) {
     Subject& subject = subjects[i];
-    try {
-      step(subject);
-    } catch (const DeviceError& error) {
-      subject.result.failure = error.what();
+    const Device& device = renderer.device();
+    const std::size_t messages = messageCount(device);
+    const auto failed = [&](const std::string& reason) {
+      if (device.isLost()) throw DeviceLost(reason);
+      subject.result.failure = reason;
       subject.finished = true;
+    };
+    try {
+      const ShaderLibrary::Recording recording(device.shaders(), subject.result.shaders);
+      step(subject);
+    } catch (const DeviceLost&) {
+      throw;
+    } catch (const DeviceError& error) {
+      failed(error.what());
+    } catch (const vk::SystemError& error) {
+      failed(fmt::format("{} failed while working: {}", device.info().name, error.what()));
     }
+    subject.result.validationMessages += messageCount(device) - messages;
     if (subject.finished) done(i, std::move(subject.result));
   };
   for (std::size_t i = 0; i < subjects.size(); ++i)
@@ -169,13 +195,15 @@ void measureInterleaved(Renderer& renderer, const Camera& camera,
       if (!subjects[i].finished) turn.push_back(i);
     if (turn.empty()) return;
     for (std::size_t i = turn.size(); i > 1; --i) std::swap(turn[i - 1], turn[random.next() % i]);
-    for (const std::size_t i : turn)
+    for (const std::size_t i : turn) {
       guarded(i, [&](Subject& subject) {
         measureBlock(bench, subject);
         if (subject.rule.stopReason().empty()) return;
         finishSubject(bench, subject);
         subject.finished = true;
       });
+      if (afterBlock) afterBlock(progressOf(subjects));
+    }
   }
 }
 

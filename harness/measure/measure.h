@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "gpu/shader.h"
 #include "measure/clock_watch.h"
 #include "measure/statistics.h"
 #include "measure/stop_rule.h"
@@ -50,11 +51,20 @@ struct Measurement {
   std::vector<std::byte> image;  ///< the last timed frame, as the target stores it
   std::string stopReason;
   double relativeSpread = 0;
-  double seconds = 0;                 ///< wall-clock time spent on this cell
-  std::uint32_t blocks = 0;           ///< rejected ones included
-  std::uint64_t rejectedSamples = 0;  ///< unusable timestamps, or frames recorded more than once
-  std::optional<ClockRecord> clock;   ///< empty without a ClockWatch
-  std::string failure;                ///< not empty: it failed on the way, for this reason
+  double seconds = 0;                    ///< wall-clock time spent on this cell
+  std::uint32_t blocks = 0;              ///< rejected ones included
+  std::uint64_t rejectedSamples = 0;     ///< unusable timestamps, or frames recorded more than once
+  std::optional<ClockRecord> clock;      ///< empty without a ClockWatch
+  std::string failure;                   ///< not empty: it failed on the way, for this reason
+  ShaderLibrary::Hashes shaders;         ///< that the method compiled while it was measured
+  std::uint64_t validationMessages = 0;  ///< of the validation layers meanwhile, where they are on
+};
+
+/// How far a method is, while others are measured in turn with it.
+struct MeasureProgress {
+  std::uint32_t blocks = 0;
+  double seconds = 0;  ///< wall-clock, of the blocks
+  bool finished = false;
 };
 
 /// Measures methods against each other in shuffled blocks: in each block every method that still
@@ -64,10 +74,14 @@ struct Measurement {
 ///
 /// With a `clock` each block begins at full clock; one at whose end the clock is another is
 /// rejected, and counts towards the limits only. Without (null: CPU devices) nothing is known of
-/// it.
-void measureInterleaved(Renderer& renderer, const Camera& camera,
-                        const std::vector<Method*>& methods, const MeasureSettings& settings,
-                        ClockWatch* clock,
-                        const std::function<void(std::size_t, Measurement)>& done);
+/// it. `afterBlock` gets the progress of all methods after each block.
+///
+/// Throws DeviceLost where the device stopped working: then nothing of what was not done() is
+/// known. Throws Interrupted (util/interrupt.h).
+void measureInterleaved(
+    Renderer& renderer, const Camera& camera, const std::vector<Method*>& methods,
+    const MeasureSettings& settings, ClockWatch* clock,
+    const std::function<void(std::size_t, Measurement)>& done,
+    const std::function<void(const std::vector<MeasureProgress>&)>& afterBlock = nullptr);
 
 }  // namespace oitlab

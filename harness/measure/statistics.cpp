@@ -28,11 +28,11 @@ class SplitMix64 {
   std::uint64_t state_;
 };
 
-/// The finite samples in ascending order, each with its unit of resampling, numbered from 0.
+/// The finite samples in ascending order, each with its block, numbered from 0.
 struct Ranked {
   std::vector<double> values;
-  std::vector<std::uint32_t> units;
-  std::size_t unitCount = 0;
+  std::vector<std::uint32_t> blocks;
+  std::size_t blockCount = 0;
 };
 
 Ranked rank(std::span<const double> samples, std::span<const std::uint32_t> blockOf) {
@@ -46,30 +46,28 @@ Ranked rank(std::span<const double> samples, std::span<const std::uint32_t> bloc
   for (const std::size_t i : order) blocks.push_back(blockOf[i]);
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  const bool framesAreUnits = blocks.size() == 1;
 
   Ranked ranked;
-  ranked.unitCount = framesAreUnits ? order.size() : blocks.size();
+  ranked.blockCount = blocks.size();
   for (const std::size_t i : order) {
     const auto block = std::lower_bound(blocks.begin(), blocks.end(), blockOf[i]);
-    ranked.units.push_back(
-        std::uint32_t(framesAreUnits ? ranked.values.size() : std::size_t(block - blocks.begin())));
+    ranked.blocks.push_back(std::uint32_t(block - blocks.begin()));
     ranked.values.push_back(samples[i]);
   }
   return ranked;
 }
 
-/// The median when each value occurs as often as its unit was drawn: a walk up the sorted values,
+/// The median when each value occurs as often as its block was drawn: a walk up the sorted values,
 /// so that no draw needs a sort of its own.
 double medianOfDraw(const Ranked& ranked, const std::vector<std::uint32_t>& timesDrawn) {
   std::uint64_t total = 0;
-  for (const std::uint32_t unit : ranked.units) total += timesDrawn[unit];
+  for (const std::uint32_t block : ranked.blocks) total += timesDrawn[block];
   const std::uint64_t lowerRank = (total - 1) / 2;
   const std::uint64_t upperRank = total / 2;
   std::uint64_t passed = 0;
   double lower = 0;
   for (std::size_t i = 0; i < ranked.values.size(); ++i) {
-    const std::uint64_t next = passed + timesDrawn[ranked.units[i]];
+    const std::uint64_t next = passed + timesDrawn[ranked.blocks[i]];
     if (passed <= lowerRank && lowerRank < next) lower = ranked.values[i];
     if (upperRank < next) return (lower + ranked.values[i]) / 2;
     passed = next;
@@ -80,10 +78,11 @@ double medianOfDraw(const Ranked& ranked, const std::vector<std::uint32_t>& time
 std::vector<double> bootstrapMedians(const Ranked& ranked, std::uint64_t seed, int resamples) {
   SplitMix64 random(seed);
   std::vector<double> medians;
-  std::vector<std::uint32_t> timesDrawn(ranked.unitCount);
+  std::vector<std::uint32_t> timesDrawn(ranked.blockCount);
   for (int r = 0; r < resamples; ++r) {
     std::fill(timesDrawn.begin(), timesDrawn.end(), 0);
-    for (std::size_t i = 0; i < ranked.unitCount; ++i) ++timesDrawn[random.below(ranked.unitCount)];
+    for (std::size_t i = 0; i < ranked.blockCount; ++i)
+      ++timesDrawn[random.below(ranked.blockCount)];
     medians.push_back(medianOfDraw(ranked, timesDrawn));
   }
   std::sort(medians.begin(), medians.end());
@@ -119,9 +118,10 @@ Summary summarize(std::span<const double> samples, std::span<const std::uint32_t
   summary.p95 = quantileOfSorted(sorted, 0.95);
   summary.max = sorted.back();
   summary.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / double(sorted.size());
+  summary.blocks = ranked.blockCount;
+  if (summary.blocks < fewestBlocks) return summary;
   const std::vector<double> medians = bootstrapMedians(ranked, seed, resamples);
-  summary.ciLow = quantileOfSorted(medians, 0.025);
-  summary.ciHigh = quantileOfSorted(medians, 0.975);
+  summary.ci95 = {quantileOfSorted(medians, 0.025), quantileOfSorted(medians, 0.975)};
   return summary;
 }
 

@@ -20,6 +20,18 @@ struct DeviceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The device stopped working (a crash of the driver, a hang that the system ended): nothing that
+/// was made on it can be used any more. It can be opened anew.
+struct DeviceLost : DeviceError {
+  using DeviceError::DeviceError;
+};
+
+/// Results cannot be written: the disk is full, the folder is gone or read-only. No input mends it,
+/// and there is no point in measuring on: the program ends with exit code 4.
+struct OutputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Throws an error with a formatted message: fail<InputError>("{}: no such file", path).
 template <typename Error, typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {

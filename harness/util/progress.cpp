@@ -19,13 +19,6 @@ std::size_t terminalColumns(std::FILE* file) {
 
 }  // namespace
 
-std::optional<double> estimateSecondsLeft(std::size_t done, std::size_t total,
-                                          double elapsedSeconds) {
-  if (done == 0 || !(elapsedSeconds > 0)) return std::nullopt;
-  const std::size_t left = total - std::min(done, total);
-  return elapsedSeconds / double(done) * double(left);
-}
-
 std::string formatSeconds(double seconds) {
   const auto whole = std::uint64_t(std::ceil(std::max(seconds, 0.0)));
   const std::uint64_t hours = whole / 3600;
@@ -48,32 +41,14 @@ bool isTerminal(std::FILE* file) {
   return isatty(fileno(file)) == 1;
 }
 
-Progress::Progress(std::size_t total, bool enabled, bool verbose, std::FILE* out)
-    : total_(total), enabled_(enabled), verbose_(verbose), out_(out) {}
-
-Progress::~Progress() {
+void Progress::show(std::size_t done, std::string_view label, std::optional<double> secondsLeft) {
+  if (!enabled_) return;
   clear();
-}
-
-void Progress::begin(std::string_view label) {
-  if (enabled_) {
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const auto secondsLeft = estimateSecondsLeft(done_, total_, elapsed.count());
-    clear();
-    // A terminal may start a new line once its last column is written.
-    const std::size_t columns = terminalColumns(out_) - 1;
-    fmt::print(out_, "{}", progressLine(done_, total_, label, secondsLeft, columns));
-    std::fflush(out_);
-    shown_ = true;
-  } else if (verbose_) {
-    fmt::print(out_, "[{}/{}] {}\n", done_ + 1, total_, label);
-    std::fflush(out_);
-  }
-}
-
-void Progress::finish() {
-  ++done_;
-  if (done_ >= total_) clear();
+  // A terminal wraps once its last column is written.
+  const std::size_t columns = terminalColumns(out_) - 1;
+  fmt::print(out_, "{}", progressLine(done, total_, label, secondsLeft, columns));
+  std::fflush(out_);
+  shown_ = true;
 }
 
 void Progress::clear() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <optional>
@@ -8,11 +7,6 @@
 #include <string_view>
 
 namespace oitlab {
-
-/// The seconds for the remaining cells if they take as long as the finished ones did on average.
-/// Empty while no cell is finished or no time has passed.
-std::optional<double> estimateSecondsLeft(std::size_t done, std::size_t total,
-                                          double elapsedSeconds);
 
 /// "00:12", "12:34" or "1:02:03", rounded up to whole seconds; "100 h" and more in hours.
 std::string formatSeconds(double seconds);
@@ -24,34 +18,28 @@ std::string progressLine(std::size_t done, std::size_t total, std::string_view l
 
 bool isTerminal(std::FILE* file);
 
-/// Shows the progress of a sweep in one line, which is rewritten in place and cleared at the end.
-/// If `out` is a file or a pipe it prints nothing, or with `verbose` one plain line per cell.
+/// How far a sweep is: one line, rewritten in place and cleared at the end. Where `out` is a file
+/// or a pipe nothing is printed.
 class Progress {
  public:
-  explicit Progress(std::size_t total, bool enabled = isTerminal(stderr), bool verbose = false,
-                    std::FILE* out = stderr);
-  ~Progress();
+  explicit Progress(std::size_t total, bool enabled = isTerminal(stderr), std::FILE* out = stderr)
+      : total_(total), enabled_(enabled), out_(out) {}
+  ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A cell starts. `total` should count the cells that will be run: with the cells that a resumed
-  /// sweep already has, the estimate would be too low.
-  void begin(std::string_view label);
+  /// `total` should count cells that are to be run, without those that a resumed sweep already has.
+  void show(std::size_t done, std::string_view label, std::optional<double> secondsLeft);
 
-  /// The cell is finished. After the last one the line is cleared.
-  void finish();
-
-  /// Clears the line before another message is printed. The next begin() shows it again.
+  /// Clears the line, for a message that is to be printed in between; the next show() brings it
+  /// back.
   void clear();
 
  private:
   std::size_t total_;
-  std::size_t done_ = 0;
   bool enabled_;
-  bool verbose_;
   bool shown_ = false;
   std::FILE* out_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace oitlab

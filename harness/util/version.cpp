@@ -10,6 +10,10 @@ std::string builtCommit() {
   return OITLAB_COMMIT;
 }
 
+std::string builtSource() {
+  return OITLAB_SOURCE;
+}
+
 std::string buildType() {
   return OITLAB_BUILD_TYPE;
 }

@@ -1,12 +1,14 @@
 // Experiments: what a TOML file spans, how it is dealt out, and what its mistakes are answered
 // with.
-#include "experiment/run.h"
+#include "experiment/experiment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "experiment/plan.h"
+#include "support/glb.h"
 #include "support/temporary_folder.h"
 #include "util/error.h"
 #include "util/paths.h"
@@ -102,6 +104,97 @@ TEST_F(Experiments, MistakesNameFileLineAndRemedy) {
   EXPECT_THAT(errorOf("[measure]\ntime_limit = \"long\"\n"), HasSubstr("x.toml:2"));
   EXPECT_THAT(errorOf("[measure]\ntime_limit = 0\n"), HasSubstr("out of range"));
   EXPECT_THAT(errorOf("name = \"empty\"\n"), HasSubstr("no cells"));
+}
+
+TEST_F(Experiments, ViewsAreCheckedWhenTheFileIsRead) {
+  const auto withView = [&](const std::string& view) {
+    return errorOf(
+        "scenes = [\"boxes\", \"planes\"]\nmethods = [\"blend\"]\nviews = [\"default\", \"" + view +
+        "\"]\n");
+  };
+  EXPECT_EQ(withView("orbit:0.5,0.8,3"), "no error");
+  EXPECT_EQ(withView("look:1,2,3,0,0,0,60"), "no error");
+  EXPECT_THAT(withView("foo"), AllOf(HasSubstr("x.toml:3"), HasSubstr("view 'foo'"),
+                                     HasSubstr("scene 'boxes'"), HasSubstr("it has default")));
+  EXPECT_THAT(withView("defalt"), HasSubstr("did you mean 'default'"));
+  EXPECT_THAT(withView("orbit:foo"), AllOf(HasSubstr("x.toml:3"), HasSubstr("orbit:YAW,PITCH")));
+  EXPECT_THAT(withView("orbit:1,2,-3"), AllOf(HasSubstr("x.toml:3"), HasSubstr("-3")));
+  EXPECT_THAT(withView("look:1,2,3,1,2,3"), HasSubstr("same point"));
+  EXPECT_THAT(withView("path:nowhere@0.5"), AllOf(HasSubstr("x.toml:3"), HasSubstr("nowhere")));
+  EXPECT_THAT(withView("path:nowhere"), HasSubstr("path:NAME@T"));
+  // Those of a scene, of a sweep, and of a profile that is not the one in use.
+  EXPECT_THAT(errorOf("methods = [\"blend\"]\nscenes = [{source = \"boxes\", views = \"foo\"}]\n"),
+              AllOf(HasSubstr("x.toml:2"), HasSubstr("view 'foo'")));
+  EXPECT_THAT(
+      errorOf("methods = [\"blend\"]\nscenes = [\"boxes\"]\n[[sweep]]\nviews = [\"foo\"]\n"),
+      HasSubstr("x.toml:4"));
+  EXPECT_THAT(
+      errorOf("methods = [\"blend\"]\nscenes = [\"boxes\"]\n[profile.cpu]\nviews = [\"foo\"]\n"),
+      HasSubstr("x.toml:4"));
+}
+
+TEST_F(Experiments, AViewMayBeACameraOfTheScenesFile) {
+  GlbBuilder glb;
+  const int mesh = glb.mesh({{"POSITION", glb.positions({0, 0, 0, 1, 0, 0, 0, 1, 0})}});
+  glb.node({{"mesh", mesh}});
+  glb.json["cameras"] = {{{"name", "front"},
+                          {"type", "perspective"},
+                          {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
+  glb.node({{"camera", 0}, {"translation", {0, 0, 5}}});
+  glb.write(folder_ / "own.glb");
+  const auto withView = [&](const std::string& view) {
+    return errorOf("scenes = [\"own.glb\"]\nmethods = [\"blend\"]\nviews = [\"" + view + "\"]\n");
+  };
+  EXPECT_EQ(withView("front"), "no error");
+  EXPECT_THAT(withView("frnt"), AllOf(HasSubstr("x.toml:3"), HasSubstr("did you mean 'front'")));
+}
+
+TEST_F(Experiments, ANameThatCannotBeAFoldersIsAMistake) {
+  const std::string rest = "\nscenes = [\"boxes\"]\nmethods = [\"blend\"]\n";
+  for (const std::string name : {"../../evil", "a/b", "..", ".hidden", "", "a\\\\b", "a\\nb"})
+    EXPECT_THAT(errorOf("name = \"" + name + "\"" + rest),
+                AllOf(HasSubstr("x.toml:1: the name"), HasSubstr("wanted")))
+        << name;
+  EXPECT_THAT(errorOf("name = \"" + std::string(200, 'a') + "\"" + rest), HasSubstr("x.toml:1"));
+  EXPECT_EQ(errorOf("name = \"sorting in 2.5 dimensions, \u00fc\"" + rest), "no error");
+}
+
+TEST_F(Experiments, EveryKeyHasItsTypeAndRange) {
+  const std::string rest = "\nscenes = [\"boxes\"]\nmethods = [\"blend\"]\n";
+  const auto wrong = [&](const std::string& line) { return errorOf(line + rest); };
+  EXPECT_THAT(wrong("title = 3"), HasSubstr("x.toml:1: 'title' must be a string, found 3"));
+  EXPECT_THAT(wrong("seed = 1.5"), HasSubstr("x.toml:1: 'seed' must be a whole number, found 1.5"));
+  EXPECT_THAT(wrong("seed = true"), HasSubstr("must be a whole number"));
+  EXPECT_THAT(wrong("seed = -1"), HasSubstr("out of range"));
+  EXPECT_THAT(wrong("detail = true"), HasSubstr("x.toml:1: 'detail' must be a number"));
+  EXPECT_THAT(wrong("reference = \"refrence\""), HasSubstr("did you mean 'reference'"));
+  EXPECT_THAT(wrong("measure = 1"), HasSubstr("x.toml:1: 'measure' must be a table"));
+  EXPECT_THAT(wrong("sizes = [\"0x5\"]"), AllOf(HasSubstr("x.toml:1"), HasSubstr("WxH")));
+  EXPECT_THAT(wrong("sizes = [5]"), HasSubstr("a size must be a string"));
+  EXPECT_THAT(wrong("views = []"), HasSubstr("x.toml:1: 'views' is an empty list"));
+  EXPECT_THAT(wrong("sweep = 1"), HasSubstr("'sweep' must be tables"));
+  EXPECT_THAT(wrong("profile = 1"), HasSubstr("'profile' must be tables"));
+  EXPECT_THAT(wrong("profile.full.detail = 1"), HasSubstr("[profile.full]"));
+  const auto measure = [&](const std::string& line) {
+    return errorOf(rest + "[measure]\n" + line);
+  };
+  EXPECT_THAT(measure("min_blocks = 2.5"), HasSubstr("x.toml:5: 'min_blocks' must be a whole"));
+  EXPECT_THAT(measure("min_blocks = true"), HasSubstr("must be a whole number, found true"));
+  EXPECT_THAT(measure("time_limit = nan"), HasSubstr("out of range"));
+  EXPECT_THAT(measure("min_blocks = 9\nmax_blocks = 8"), HasSubstr("min_blocks, 9, is above"));
+  EXPECT_THAT(errorOf("scenes = [{source = \"boxes\", optional = 1}]\nmethods = [\"blend\"]\n"),
+              HasSubstr("x.toml:1: 'optional' must be true or false, found 1"));
+  EXPECT_THAT(errorOf("scenes = [\".\"]\nmethods = [\"blend\"]\n"), HasSubstr("is not a file"));
+  writeFileAtomically(folder_ / "own.obj", "v 0 0 0\n");
+  EXPECT_THAT(errorOf("scenes = [{source = \"own.obj\", detail = 0.5}]\nmethods = [\"blend\"]\n"),
+              AllOf(HasSubstr("x.toml:1"), HasSubstr("only generated scenes")));
+}
+
+TEST_F(Experiments, MistakesInAProfileThatIsNotUsedAreMistakes) {
+  const std::string rest = "scenes = [\"boxes\"]\nmethods = [\"blend\"]\n[profile.brief]\n";
+  EXPECT_THAT(errorOf(rest + "siezs = [\"1x1\"]\n"),
+              AllOf(HasSubstr("x.toml:4"), HasSubstr("did you mean 'sizes'")));
+  EXPECT_THAT(errorOf(rest + "[profile.brief.measure]\ntime_limit = 0\n"), HasSubstr("x.toml:5"));
 }
 
 constexpr const char* profiled = R"(
@@ -239,19 +332,35 @@ methods = ["blend"]
   EXPECT_THAT(experiment.notes[0], HasSubstr("nowhere.glb"));
 }
 
-TEST_F(Experiments, ShardsAreDisjointAndTheirUnionIsTheWhole) {
-  const auto cells = read(small).cells;
+TEST_F(Experiments, ShardsAreDisjointWholeGroupsAndTheirUnionIsTheWhole) {
+  const auto cells = read(small).cells;  // four groups of three
+  std::multiset<std::string> all;
+  for (const CellSpec& cell : cells) all.insert(cell.label());
   for (const std::uint32_t count : {1u, 2u, 3u, 4u, 5u, 12u, 20u}) {
     std::multiset<std::string> seen;
-    for (std::uint32_t index = 1; index <= count; ++index)
-      for (const CellSpec& cell : shardCells(cells, {index, count})) seen.insert(cell.label());
-    std::multiset<std::string> all;
-    for (const CellSpec& cell : cells) all.insert(cell.label());
+    std::size_t empty = 0;
+    for (std::uint32_t index = 1; index <= count; ++index) {
+      const auto mine = shardCells(cells, {index, count});
+      empty += mine.empty();
+      for (const CellSpec& cell : mine) seen.insert(cell.label());
+      for (const auto& group : groupCells(mine)) EXPECT_EQ(group.size(), 3u) << count << " shards";
+    }
     EXPECT_EQ(seen, all) << count << " shards";
+    EXPECT_EQ(empty, count > 4 ? count - 4 : 0) << count << " shards";
   }
-  // Four groups in two shards: no group is torn apart.
-  for (const std::uint32_t index : {1u, 2u})
-    for (const auto& group : groupCells(shardCells(cells, {index, 2}))) EXPECT_EQ(group.size(), 3u);
+}
+
+TEST_F(Experiments, AnEditedSceneFileMakesAnotherCell) {
+  const auto idOf = [&](const std::string& color) {
+    writeFileAtomically(folder_ / "own.mtl", "newmtl m\nKd " + color + "\n");
+    writeFileAtomically(folder_ / "own.obj",
+                        "mtllib own.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    return cellId(read("scenes = [\"own.obj\"]\nmethods = [\"blend\"]\n").cells.at(0), {});
+  };
+  // Of the same name and size: it used to be the same cell.
+  const std::string red = idOf("1 0 0"), green = idOf("0 1 0");
+  EXPECT_NE(red, green);
+  EXPECT_EQ(idOf("1 0 0"), red);
 }
 
 TEST_F(Experiments, ShardTextIsChecked) {

@@ -17,9 +17,15 @@ double quantile(std::vector<double> sorted, double q) {
   return quantileOfSorted(sorted, q);
 }
 
-/// All samples in one block.
-Summary summarizeOne(const std::vector<double>& samples) {
-  return summarize(samples, std::vector<std::uint32_t>(samples.size(), 0));
+/// Each sample a block of its own.
+std::vector<std::uint32_t> blocksOfOne(std::size_t count) {
+  std::vector<std::uint32_t> blocks(count);
+  std::iota(blocks.begin(), blocks.end(), 0U);
+  return blocks;
+}
+
+Summary summarizeEach(const std::vector<double>& samples) {
+  return summarize(samples, blocksOfOne(samples.size()));
 }
 
 TEST(Quantile, MedianOfOddAndEvenCounts) {
@@ -47,7 +53,7 @@ TEST(Summarize, ValuesWorkedOutByHand) {
   std::vector<double> samples(101);
   std::iota(samples.begin(), samples.end(), 1.0);
   std::shuffle(samples.begin(), samples.end(), std::mt19937(1));
-  const Summary summary = summarizeOne(samples);
+  const Summary summary = summarizeEach(samples);
   EXPECT_EQ(summary.count, 101U);
   EXPECT_EQ(summary.min, 1);
   EXPECT_EQ(summary.q1, 26);
@@ -56,32 +62,46 @@ TEST(Summarize, ValuesWorkedOutByHand) {
   EXPECT_EQ(summary.p95, 96);  // not the median again
   EXPECT_EQ(summary.max, 101);
   EXPECT_EQ(summary.mean, 51);
-  EXPECT_LT(summary.ciLow, 51);
-  EXPECT_GT(summary.ciHigh, 51);
+  EXPECT_EQ(summary.blocks, 101U);
+  ASSERT_TRUE(summary.ci95);
+  EXPECT_LT(summary.ci95->first, 51);
+  EXPECT_GT(summary.ci95->second, 51);
 }
 
 TEST(Summarize, NothingGivesZeros) {
-  const Summary summary = summarizeOne({});
+  const Summary summary = summarizeEach({});
   EXPECT_EQ(summary.count, 0U);
   EXPECT_EQ(summary.median, 0);
-  EXPECT_EQ(summary.ciHigh, 0);
+  EXPECT_FALSE(summary.ci95);
 }
 
-TEST(Summarize, OneSampleIsItsOwnInterval) {
-  const Summary summary = summarizeOne({3});
-  EXPECT_EQ(summary.p95, 3);
-  EXPECT_EQ(summary.ciLow, 3);
-  EXPECT_EQ(summary.ciHigh, 3);
+TEST(Summarize, FewBlocksHaveNoInterval) {
+  // One sample had an interval of no width, as if it were known exactly.
+  std::vector<double> samples;
+  for (std::uint64_t count = 1; count < fewestBlocks; ++count) {
+    samples.push_back(double(count));
+    const Summary summary = summarizeEach(samples);
+    EXPECT_EQ(summary.blocks, count);
+    EXPECT_FALSE(summary.ci95) << count << " blocks";
+  }
+  samples.push_back(6);
+  const Summary summary = summarizeEach(samples);
+  ASSERT_TRUE(summary.ci95);
+  EXPECT_LT(summary.ci95->first, summary.ci95->second);
+  // Frames of one block are not independent, however many there are.
+  const Summary oneBlock = summarize(samples, std::vector<std::uint32_t>(samples.size(), 3));
+  EXPECT_EQ(oneBlock.blocks, 1U);
+  EXPECT_FALSE(oneBlock.ci95);
 }
 
 TEST(Summarize, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
-  const Summary summary = summarizeOne({notANumber, 2, infinite, 1, 3, -infinite});
+  const Summary summary = summarizeEach({notANumber, 2, infinite, 1, 3, -infinite});
   EXPECT_EQ(summary.count, 3U);
   EXPECT_EQ(summary.notFinite, 3U);
   EXPECT_EQ(summary.median, 2);
   EXPECT_EQ(summary.max, 3);
-  EXPECT_EQ(summarizeOne({notANumber}).count, 0U);
-  EXPECT_EQ(summarizeOne({notANumber}).notFinite, 1U);
+  EXPECT_EQ(summarizeEach({notANumber}).count, 0U);
+  EXPECT_EQ(summarizeEach({notANumber}).notFinite, 1U);
 }
 
 TEST(Summarize, IsDeterministicFromTheSeed) {
@@ -95,24 +115,27 @@ TEST(Summarize, IsDeterministicFromTheSeed) {
   const Summary a = summarize(samples, blocks, 7);
   const Summary b = summarize(samples, blocks, 7);
   const Summary c = summarize(samples, blocks, 8);
-  EXPECT_EQ(a.ciLow, b.ciLow);
-  EXPECT_EQ(a.ciHigh, b.ciHigh);
-  EXPECT_TRUE(a.ciLow != c.ciLow || a.ciHigh != c.ciHigh);
+  ASSERT_TRUE(a.ci95);
+  EXPECT_EQ(a.ci95, b.ci95);
+  EXPECT_NE(a.ci95, c.ci95);
 }
 
 TEST(Summarize, BlocksAreDrawnWhole) {
-  // Two blocks, with any numbers: a draw is {A,A}, {A,B} or {B,B}, with the medians 1, 1.5 and 2,
-  // because each block is constant. Draws of single frames would nearly always have the median 1.5.
+  // Six blocks, however numbered, three of ones and three of twos, each constant: a draw of six
+  // blocks has a median of 1, 1.5 or 2, and each is frequent. Draws of single frames, 150 of each,
+  // would hardly ever leave 1.5.
   std::vector<double> samples;
   std::vector<std::uint32_t> blocks;
-  for (int i = 0; i < 50; ++i) {
-    samples.insert(samples.end(), {1.0, 2.0});
-    blocks.insert(blocks.end(), {900U, 7U});
-  }
+  for (int i = 0; i < 50; ++i)
+    for (const std::uint32_t block : {900U, 7U, 8U, 31U, 2U, 5U}) {
+      samples.push_back(block % 2 == 0 ? 1.0 : 2.0);
+      blocks.push_back(block);
+    }
   const Summary summary = summarize(samples, blocks);
   EXPECT_EQ(summary.median, 1.5);
-  EXPECT_EQ(summary.ciLow, 1);
-  EXPECT_EQ(summary.ciHigh, 2);
+  ASSERT_TRUE(summary.ci95);
+  EXPECT_EQ(summary.ci95->first, 1);
+  EXPECT_EQ(summary.ci95->second, 2);
 }
 
 TEST(Summarize, IntervalsCoverTheTruth) {
@@ -135,10 +158,9 @@ TEST(Summarize, IntervalsCoverTheTruth) {
       }
     }
     const Summary byBlocks = summarize(samples, blocks, 1, 200);
-    covered += byBlocks.ciLow <= 10 && 10 <= byBlocks.ciHigh;
-    const std::vector<std::uint32_t> oneBlock(samples.size(), 0);
-    const Summary byFrames = summarize(samples, oneBlock, 1, 200);
-    coveredByFrames += byFrames.ciLow <= 10 && 10 <= byFrames.ciHigh;
+    covered += byBlocks.ci95->first <= 10 && 10 <= byBlocks.ci95->second;
+    const Summary byFrames = summarize(samples, blocksOfOne(samples.size()), 1, 200);
+    coveredByFrames += byFrames.ci95->first <= 10 && 10 <= byFrames.ci95->second;
   }
   EXPECT_GE(covered, trials * 86 / 100);
   EXPECT_LE(covered, trials * 99 / 100);

@@ -7,17 +7,6 @@
 namespace oitlab {
 namespace {
 
-TEST(EstimateSecondsLeft, IsTheMeanOfTheDoneTimesTheRemaining) {
-  EXPECT_EQ(estimateSecondsLeft(3, 12, 6.0), 18.0);
-  EXPECT_EQ(estimateSecondsLeft(12, 12, 6.0), 0.0);
-  EXPECT_EQ(estimateSecondsLeft(13, 12, 6.0), 0.0);
-}
-
-TEST(EstimateSecondsLeft, IsUnknownBeforeTheFirstCellIsDone) {
-  EXPECT_EQ(estimateSecondsLeft(0, 12, 6.0), std::nullopt);
-  EXPECT_EQ(estimateSecondsLeft(3, 12, 0.0), std::nullopt);
-}
-
 TEST(FormatSeconds, ShowsMinutesOrHours) {
   EXPECT_EQ(formatSeconds(0), "00:00");
   EXPECT_EQ(formatSeconds(11.2), "00:12");
@@ -46,33 +35,23 @@ std::string contentOf(std::FILE* file) {
   return std::string(text, std::fread(text, 1, sizeof text, file));
 }
 
-/// The text that a Progress of two cells prints.
-std::string printed(bool enabled, bool verbose) {
-  const File file(std::tmpfile(), std::fclose);
-  Progress progress(2, enabled, verbose, file.get());
-  progress.begin("first");
-  progress.finish();
-  progress.begin("second");
-  progress.finish();
-  return contentOf(file.get());
-}
-
 TEST(Progress, RewritesItsLineAndClearsIt) {
-  EXPECT_EQ(printed(true, false), "[0/2] first\r\x1b[K[1/2] second   00:01 left\r\x1b[K");
-}
-
-TEST(Progress, ClearsItsLineWhenASweepIsCutShort) {
   const File file(std::tmpfile(), std::fclose);
   {
-    Progress progress(2, true, false, file.get());
-    progress.begin("first");
+    Progress progress(2, true, file.get());
+    progress.show(0, "first", std::nullopt);
+    progress.show(1, "second", 0.2);
   }
-  EXPECT_EQ(contentOf(file.get()), "[0/2] first\r\x1b[K");
+  EXPECT_EQ(contentOf(file.get()), "[0/2] first\r\x1b[K[1/2] second   00:01 left\r\x1b[K");
 }
 
-TEST(Progress, IsSilentOrPlainAwayFromATerminal) {
-  EXPECT_EQ(printed(false, false), "");
-  EXPECT_EQ(printed(false, true), "[1/2] first\n[2/2] second\n");
+TEST(Progress, IsSilentAwayFromATerminal) {
+  const File file(std::tmpfile(), std::fclose);
+  {
+    Progress progress(2, false, file.get());
+    progress.show(0, "first", 3.0);
+  }
+  EXPECT_EQ(contentOf(file.get()), "");
 }
 
 TEST(Progress, KnowsThatAFileIsNoTerminal) {

@@ -15,6 +15,8 @@ ROOT = Path(__file__).resolve().parents[3]
 # From the top down. Packages on one line do not include each other.
 ORDER = [
     ["cli"],
+    ["sweep"],
+    ["results"],
     ["experiment"],
     ["methods", "measure", "quality"],
     ["render"],

@@ -12,10 +12,9 @@ namespace oitlab::fault {
 
 class Fault : public Method {
  public:
-  void prepare(const Device&, const GpuScene&, const Target&,
-               const Parameters& parameters) override {
+  explicit Fault(const MethodContext& context) {
     const char* variable = std::getenv("OITLAB_FAULT");
-    kind_ = variable ? variable : parameters.choice("kind");
+    kind_ = variable ? variable : context.parameters.choice("kind");
     if (kind_ == "prepare") throw DeviceError("it cannot be made ready");
     if (kind_ == "memory") throw std::bad_alloc();
   }
@@ -48,7 +47,7 @@ const RegisterMethod registered({
                           {"none", "prepare", "frame", "memory", "memory_later", "lost",
                            "lost_once", "stuck", "invalid"},
                           "what goes wrong")},
-    .make = [] { return std::make_unique<Fault>(); },
+    .make = makeMethod<Fault>,
 });
 
 }  // namespace oitlab::fault

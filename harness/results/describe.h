@@ -2,8 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiment/experiment.h"
+#include "gpu/shader.h"
 #include "quality/compare.h"
+#include "render/renderer.h"
 
 namespace oitlab {
 
@@ -19,8 +20,8 @@ nlohmann::json describeMemory(const Renderer& renderer, const Method& method);
 /// Null is what JSON has no number for, or what cannot be measured (quality/compare.h).
 nlohmann::json describeComparison(const Comparison& comparison);
 
-/// Commit, build type, validation, command line, date and the shaders of this method.
-nlohmann::json describeProvenance(const Device& device, const std::string& method);
+/// Commit, build type, validation, command line, date, and `shaders`: content hashes by label.
+nlohmann::json describeProvenance(bool validation, const ShaderLibrary::Hashes& shaders);
 
 /// The command line of this process, for provenance; set once by main().
 void setCommandLine(int argc, char** argv);

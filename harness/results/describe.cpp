@@ -1,4 +1,4 @@
-#include "experiment/describe.h"
+#include "results/describe.h"
 
 #include <ctime>
 
@@ -77,12 +77,10 @@ void setCommandLine(int argc, char** argv) {
   commandLine() = line;
 }
 
-nlohmann::json describeProvenance(const Device& device, const std::string& method) {
-  nlohmann::json shaders = nlohmann::json::object();
-  for (const auto& [path, hash] : device.shaders().hashes())
-    if (path.starts_with("common/") || path.starts_with(method + "/")) shaders[path] = hash;
-  return {{"commit", builtCommit()},  {"build", buildType()}, {"validation", device.validation()},
-          {"command", commandLine()}, {"date", utcNow()},     {"shaders", shaders}};
+nlohmann::json describeProvenance(bool validation, const ShaderLibrary::Hashes& shaders) {
+  return {{"commit", builtCommit()},  {"source", builtSource()}, {"build", buildType()},
+          {"validation", validation}, {"command", commandLine()}, {"date", utcNow()},
+          {"shaders", nlohmann::json(shaders)}};
 }
 
 nlohmann::json describeMethod(const MethodInfo& info) {

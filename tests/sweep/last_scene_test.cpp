@@ -1,5 +1,5 @@
 // A sweep over sizes and views loads its scene once.
-#include "experiment/last_scene.h"
+#include "sweep/last_scene.h"
 
 #include "support/gpu.h"
 #include "util/error.h"
