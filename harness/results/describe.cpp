@@ -78,8 +78,8 @@ void setCommandLine(int argc, char** argv) {
 }
 
 nlohmann::json describeProvenance(bool validation, const ShaderLibrary::Hashes& shaders) {
-  return {{"commit", builtCommit()},  {"source", builtSource()}, {"build", buildType()},
-          {"validation", validation}, {"command", commandLine()}, {"date", utcNow()},
+  return {{"commit", builtCommit()},           {"source", builtSource()},  {"build", buildType()},
+          {"validation", validation},          {"command", commandLine()}, {"date", utcNow()},
           {"shaders", nlohmann::json(shaders)}};
 }
 

@@ -152,8 +152,7 @@ bool stillFail(Session& session, const Experiment& experiment, const std::vector
           guarded(
               session.device,
               [&] {
-                const auto method =
-                    stage.renderer.make(findMethod(cell.method), cell.parameters);
+                const auto method = stage.renderer.make(findMethod(cell.method), cell.parameters);
                 checkInterrupt();
                 stage.renderer.render(*method, stage.camera);
               },

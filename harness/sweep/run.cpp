@@ -201,8 +201,7 @@ SweepSummary runExperiment(const SweepOptions& options, const Experiment& experi
   const DeviceInfo device = session->device.info();
   for (const CellSpec& cell : cells) checkTargetSize(device, cell.width, cell.height);
 
-  ResultsFolder folder(results, device, MeasuredWith(experiment, options.device),
-                       options.keep);
+  ResultsFolder folder(results, device, MeasuredWith(experiment, options.device), options.keep);
   folder.make();
   finishCommits(results);
   SweepSummary before;
@@ -233,8 +232,7 @@ SweepSummary runExperiment(const SweepOptions& options, const Experiment& experi
 SweepForecast forecast(const SweepOptions& options, const DeviceInfo& device,
                        const Experiment& experiment, const std::vector<CellSpec>& cells,
                        const fs::path& results) {
-  ResultsFolder folder(results, device, MeasuredWith(experiment, options.device),
-                       options.keep);
+  ResultsFolder folder(results, device, MeasuredWith(experiment, options.device), options.keep);
   Pace pace(experiment.measure, device.isCpu());
   pace.load(paceFile(device));
   SweepForecast found;

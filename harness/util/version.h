@@ -8,8 +8,8 @@ namespace oitlab {
 /// changes that it does not hold. "unknown" where the sources were not a git checkout.
 std::string builtCommit();
 
-/// A hash of the C++ source of harness/ and methods/ without the command line, 16 hexadecimal digits:
-/// a program with another one may measure something else.
+/// A hash of the C++ source of harness/ and methods/ without the command line, 16 hexadecimal
+/// digits: a program with another one may measure something else.
 std::string builtSource();
 
 /// CMake's name for how it was built: Release, Debug, RelWithDebInfo.
