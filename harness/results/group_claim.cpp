@@ -33,9 +33,15 @@ void checkOutput(const fs::path& path, const std::error_code& error) {
   if (error) fail<OutputError>("{}: cannot be written: {}", path.string(), error.message());
 }
 
+/// A folder below running/. The last process to end removes running/, and may do so between the
+/// steps of this: then they begin again. Each such try needs another process that just ended, so
+/// a hundred in a row are no accident.
 void makeFolder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
+  for (int tries = 0; tries < 100; ++tries) {
+    fs::create_directories(folder, error);
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
   checkOutput(folder, error);
 }
 
@@ -75,9 +81,8 @@ bool isOld(const fs::path& path, fs::file_time_type now, std::chrono::millisecon
 /// What time the file system says it is: that of a file that was written just now.
 fs::file_time_type fileSystemNow(const fs::path& folder) {
   const fs::path probe = folder / (Owner::self().token + newSuffix);
+  makeFolder(probe);
   std::error_code error;
-  fs::create_directories(probe, error);  // the last process to end removes running/
-  checkOutput(probe, error);
   const auto now = fs::last_write_time(probe, error);
   checkOutput(probe, error);
   fs::remove(probe, error);
