@@ -46,10 +46,10 @@ std::vector<Given> variantsOf(const MethodInfo& method) {
 
 /// Programs of lucid that a frame would only make when it needs them.
 void makeAll(const lucid::Programs& programs) {
-  for (const auto& program : programs.blocks) *program;
   for (const auto* program :
-       {&programs.ordered, &programs.sortLow, &programs.sortHigh, &programs.lowRaster,
-        &programs.highRaster, &programs.repair, &programs.deepCapture, &programs.deepResolve})
+       {&programs.countHigh, &programs.countAndWriteLow, &programs.writeHigh, &programs.ordered,
+        &programs.sortLow, &programs.sortHigh, &programs.lowRaster, &programs.highRaster,
+        &programs.repair, &programs.deepCapture, &programs.deepResolve})
     **program;
 }
 
