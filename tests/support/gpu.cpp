@@ -27,11 +27,13 @@ void GpuTest::TearDown() {
 }
 
 RenderFixture::RenderFixture(Scene scene, std::uint32_t width, std::uint32_t height,
-                             std::optional<std::uint64_t> shuffleSeed, TargetFormat format)
-    : scene_(std::move(scene)),
-      gpuScene_(sharedDevice(), scene_, shuffleSeed),
-      target_(sharedDevice(), width, height, format),
-      renderer_(sharedDevice(), gpuScene_, target_) {}
+                             std::optional<std::uint64_t> shuffleSeed, TargetFormat format,
+                             const Device& device)
+    : device_(device),
+      scene_(std::move(scene)),
+      gpuScene_(device, scene_, shuffleSeed),
+      target_(device, width, height, format),
+      renderer_(device, gpuScene_, target_) {}
 
 RenderFixture::Result RenderFixture::render(const std::string& name,
                                             const std::map<std::string, std::string>& parameters,
@@ -49,7 +51,7 @@ RenderFixture::Result RenderFixture::render(Method& method, const Camera& camera
                                             bool instrumented) {
   Result result;
   result.frame = renderer_.render(method, camera, instrumented);
-  const auto bytes = target_.readBytes(sharedDevice());
+  const auto bytes = target_.readBytes(device_);
   result.image = target_.toImage(bytes);
   result.hash = imageHash(bytes);
   result.memory = renderer_.memoryByBuffer(method);

@@ -21,12 +21,12 @@ class GpuTest : public ::testing::Test {
   std::size_t messagesBefore_ = 0;
 };
 
-/// A scene, a target and a renderer on the shared device.
+/// A scene, a target and a renderer on the shared device, or another.
 class RenderFixture {
  public:
   RenderFixture(Scene scene, std::uint32_t width, std::uint32_t height,
                 std::optional<std::uint64_t> shuffleSeed = {},
-                TargetFormat format = TargetFormat::rgba32f);
+                TargetFormat format = TargetFormat::rgba32f, const Device& device = sharedDevice());
 
   struct Result {
     Image image;
@@ -46,10 +46,12 @@ class RenderFixture {
   Result render(Method& method, const Camera& camera, bool instrumented = true);
 
   Renderer& renderer() { return renderer_; }
+  const Target& target() const { return target_; }
   const Scene& scene() const { return scene_; }
   Camera defaultView() const { return findView(scene_, "default"); }
 
  private:
+  const Device& device_;
   Scene scene_;
   GpuScene gpuScene_;
   Target target_;
