@@ -41,7 +41,7 @@ def _clock(section: Section) -> list[str]:
 def _images(report: Report, section: Section) -> list[str]:
     lines = []
     for _, cells in section.settings():
-        in_folder = [report.sources[key].is_dir() for key in cells["key"]]
+        in_folder = cells["key"].map(lambda key: report.sources[key].is_dir()).astype(bool)
         pictured = cells[cells["image"].notna() & in_folder]
         if pictured.empty:
             continue
