@@ -77,7 +77,7 @@ void tell(const SweepSummary& summary, const RunOptions& options,
 
 /// The cells of the shard; says so where there are none.
 std::vector<CellSpec> dealCells(const Experiment& experiment, const Shard& shard) {
-  const auto cells = shardCells(experiment.cells, shard);
+  auto cells = shardCells(experiment.cells, shard);
   if (cells.empty() && !experiment.cells.empty())
     fmt::print(
         stderr,

@@ -36,6 +36,7 @@ std::vector<MethodChoice> readMethod(TomlTable& owner, const toml::node& node) {
       combinations = std::move(longer);
     }
     std::vector<MethodChoice> choices;
+    choices.reserve(combinations.size());
     for (const auto& combination : combinations)
       choices.push_back({name, Parameters(info.parameters, combination, name)});
     return choices;

@@ -147,6 +147,7 @@ std::size_t messageCount(const Device& device) {
 
 std::vector<MeasureProgress> progressOf(const std::vector<Subject>& subjects) {
   std::vector<MeasureProgress> progress;
+  progress.reserve(subjects.size());
   for (const Subject& subject : subjects)
     progress.push_back({subject.result.blocks, subject.result.seconds, subject.finished});
   return progress;
@@ -161,6 +162,7 @@ void measureInterleaved(
     const std::function<void(const std::vector<MeasureProgress>&)>& afterBlock) {
   const Bench bench{renderer, camera, settings, clock};
   std::vector<Subject> subjects;
+  subjects.reserve(methods.size());
   for (Method* method : methods) subjects.push_back({method, StopRule(settings.stop), {}});
   Pcg32 random(settings.seed);
 
