@@ -127,7 +127,9 @@ def test_setup_installs_what_is_missing_and_nothing_else(tree, tools):
 
 
 def fake_build(tools):
-    """A CMake that records its options and leaves the files that the launcher looks at."""
+    """A CMake that records its options and leaves the files that the launcher looks at; a Python that
+    has every module."""
+    tools("python", "exit 0")
     tools("dpkg-query", 'for name; do echo "installed $name"; done')
     tools("cmake", """
 case $1 in
@@ -157,7 +159,8 @@ def test_quickstart_and_test_share_a_build_folder_in_both_orders(tree, tools, tm
     def run(verb, build):
         record = tmp_path / "record"
         record.write_text("")
-        launch(tree, verb, path=path, RECORD=str(record), OITLAB_BUILD=str(build), CI=None)
+        launch(tree, verb, path=path, RECORD=str(record), OITLAB_BUILD=str(build), CI=None,
+               OITLAB_PYTHON=str(tools.folder / "python"))
         return record.read_text().splitlines()
 
     def configured(lines):
