@@ -12,14 +12,16 @@ from program import PROGRAM
 LAYERS = PROGRAM.parent / "layers"
 
 # Every method, every kind of fragment: all cells of one image size are one group. One frame a block
-# and one block a cell: the same calls in every run, whatever the machine is busy with.
+# and one block a cell: the same calls in every run, whatever the machine is busy with. Small, since
+# the tests run it often: about a second of a CPU.
 SWEEP = """
 name = "faults"
-sizes = ["48x27"]
-scenes = ["planes", { source = "boxes", detail = 0.3 }]
+sizes = ["24x16"]
+scenes = ["planes", { source = "boxes", detail = 0.05 }]
 methods = ["abuffer", { method = "blend", order = ["submission", "sorted"] }, "cpu_reference",
-           { method = "depth_peeling", mode = ["front_to_back", "dual"] }, "local_memory", "lucid",
-           "reference", "wboit"]
+           { method = "depth_peeling", mode = ["front_to_back", "dual"] },
+           { method = "local_memory", passes = 2, size = 8 },
+           "lucid", "reference", "wboit"]
 [measure]
 time_limit = 60
 min_blocks = 1

@@ -39,7 +39,7 @@ def test_every_method_has_one_image(program, tmp_path, undisturbed, long, load):
         pytest.skip("the default device is not llvmpipe, whose threads and vectors can be set")
     # 30 runs each: every pair several times; otherwise the corners.
     pairs = ([(t, w) for t in range(1, 5) for w in (128, 256, 512)] * 3)[:30] if long else [
-        (1, 128), (4, 512), (3, 256)]
+        (1, 128), (4, 512)]
     expected = {cell["id"].rsplit("-", 1)[0]: cell["image_hash"] for cell in undisturbed.values()}
     wrong = []
     for repeat, (threads, width) in enumerate(pairs):

@@ -13,7 +13,7 @@ from small_sweep import LAYERS, Sweep, assert_right
 # One small group, and what else reads and writes numbers.
 ONE_GROUP = """
 name = "faults"
-sizes = ["48x27"]
+sizes = ["24x16"]
 scenes = ["planes"]
 methods = ["blend", "reference"]
 [measure]
