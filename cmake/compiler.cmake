@@ -10,6 +10,9 @@ if(OITLAB_SANITIZE)
   target_compile_options(oitlab_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
   target_link_options(oitlab_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(OITLAB_FUZZ)
+  target_compile_options(oitlab_options INTERFACE -fsanitize=fuzzer-no-link)  # coverage, which guides libFuzzer
+endif()
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

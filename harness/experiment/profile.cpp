@@ -43,10 +43,13 @@ std::string applyProfile(const std::string& file, toml::table& root,
     toml::table* target = root.get(key) ? root.get(key)->as_table() : nullptr;
     if (toml::table* own = value.as_table(); own && target) {
       for (auto&& [inner, given] : *own)
-        given.visit(
-            [&](auto& concrete) { target->insert_or_assign(inner.str(), std::move(concrete)); });
+        given.visit([&, name = inner.str()](auto& concrete) {
+          target->insert_or_assign(name, std::move(concrete));
+        });
     } else {
-      value.visit([&](auto& concrete) { root.insert_or_assign(key.str(), std::move(concrete)); });
+      value.visit([&, name = key.str()](auto& concrete) {
+        root.insert_or_assign(name, std::move(concrete));
+      });
     }
   }
   return options.profile;

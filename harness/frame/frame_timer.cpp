@@ -53,7 +53,8 @@ FrameTimer::Reading FrameTimer::read() {
       vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
   OITLAB_CHECK(result == vk::Result::eSuccess);
   const double msPerTick = double(device_.info().timestampPeriodNs) * 1e-6;
-  auto between = [&](std::size_t first, std::size_t last) -> std::optional<double> {
+  auto between = [&, &stamps = stamps](std::size_t first,
+                                       std::size_t last) -> std::optional<double> {
     const auto ticks = ticksBetween(stamps[first], stamps[last], device_.info().timestampValidBits);
     if (!ticks) return std::nullopt;
     return double(*ticks) * msPerTick;
