@@ -109,7 +109,7 @@ def test_packages_are_listed_by_purpose(tree):
     assert not (use | build) & (test | benchmark), "what is needed to test is not needed to measure"
     assert not any("-dev" in name for name in use)
     done = launch(tree, "packages", "play")
-    assert done.returncode == 2 and "use build test benchmark develop" in done.stderr
+    assert done.returncode == 2 and "use build test benchmark fuzz develop" in done.stderr
 
 
 def test_setup_installs_what_is_missing_and_nothing_else(tree, tools):
