@@ -166,7 +166,7 @@ VkDevice deviceOf(const void* handle) {
 
 }  // namespace oitlab::layer
 
-extern "C" VK_LAYER_EXPORT VKAPI_ATTR VkResult VKAPI_CALL
+extern "C" [[gnu::visibility("default")]] VKAPI_ATTR VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version) {
   version->loaderLayerInterfaceVersion = CURRENT_LOADER_LAYER_INTERFACE_VERSION;
   version->pfnGetInstanceProcAddr = oitlab::layer::getInstanceProcAddr;

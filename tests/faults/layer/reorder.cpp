@@ -413,6 +413,6 @@ void beforeDestruction(VkDevice) {}
 
 }  // namespace oitlab::layer
 
-extern "C" VK_LAYER_EXPORT oitlab::layer::Reorder* oitlabReorder() {
+extern "C" [[gnu::visibility("default")]] oitlab::layer::Reorder* oitlabReorder() {
   return &oitlab::layer::reorder();
 }
