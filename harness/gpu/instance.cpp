@@ -110,10 +110,11 @@ Instance::Instance(const Options& options)
   if (options.shaderPrintf)
     messenger.messageSeverity |= Severity::eInfo;  // the level of printed text
   messenger.messageType = Type::eGeneral | Type::eValidation | Type::ePerformance;
-  messenger.pfnUserCallback =
-      reinterpret_cast<decltype(messenger.pfnUserCallback)>(&MessageLog::receive);
   messenger.pUserData = log_.get();
-  messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger);
+  // The type of the callback differs between versions of the C++ headers; C's does not.
+  VkDebugUtilsMessengerCreateInfoEXT withCallback = messenger;
+  withCallback.pfnUserCallback = &MessageLog::receive;
+  messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, withCallback);
 }
 
 Instance::~Instance() = default;

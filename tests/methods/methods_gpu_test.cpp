@@ -209,7 +209,7 @@ TEST_F(Methods, PipelinesAreMadeOnce) {
 
 TEST_F(Methods, MemoryIsListedByBuffer) {
   RenderFixture fixture(generated("planes"), 64, 32);
-  const MethodInfo& info = findMethod("reference");
+  const MethodInfo info = findMethod("reference");
   const auto method = fixture.renderer().make(
       info, Parameters(info.parameters, {{"initial_depth", "2"}}, info.name));
   const auto& buffers = method->memory().byName();

@@ -68,7 +68,7 @@ TEST_F(Abuffer, EachIntervalIsAStage) {
 
 TEST_F(Abuffer, OnlyTheMaskInUseTakesMemory) {
   RenderFixture fixture(randomSoup(1, 8), 64, 32);
-  const MethodInfo& info = findMethod("abuffer");
+  const MethodInfo info = findMethod("abuffer");
   const auto buffersOf = [&](const Settings& settings) {
     const auto method =
         fixture.renderer().make(info, Parameters(info.parameters, settings, info.name));

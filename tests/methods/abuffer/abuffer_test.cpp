@@ -12,7 +12,7 @@ namespace {
 void expectExact(RenderFixture& fixture, const RenderFixture::Result& exact,
                  const Settings& settings) {
   SCOPED_TRACE(nameOf(settings));
-  const MethodInfo& info = findMethod("abuffer");
+  const MethodInfo info = findMethod("abuffer");
   Renderer& renderer = fixture.renderer();
   const auto method = renderer.make(info, Parameters(info.parameters, settings, info.name));
   FrameResult frame;

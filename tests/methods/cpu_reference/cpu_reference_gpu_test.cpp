@@ -83,7 +83,7 @@ TEST_F(CpuReferenceAgainstDevice, TheMethodUploadsTheSamePicture) {
 TEST_F(CpuReferenceAgainstDevice, TheMethodFollowsTheCamera) {
   const Scene scene = loadScene({"boxes", {}, 0.02f});
   RenderFixture fixture(scene, 33, 33);
-  const MethodInfo& info = findMethod("cpu_reference");
+  const MethodInfo info = findMethod("cpu_reference");
   const auto method = fixture.renderer().make(info, Parameters(info.parameters, {}, info.name));
   Camera camera = findView(scene, "default");
   const auto first = fixture.renderer().render(*method, camera).counters;

@@ -205,7 +205,7 @@ TEST_F(DepthPeeling, FindsTheNumberOfPasses) {
   away.target = {0, 0, 2};
   const auto exact = fixture.render("reference");
   for (const char* mode : {"front_to_back", "dual"}) {
-    const MethodInfo& info = findMethod("depth_peeling");
+    const MethodInfo info = findMethod("depth_peeling");
     const auto method = fixture.renderer().make(
         info, Parameters(info.parameters, {{"mode", mode}, {"atomics", "int64"}}, info.name));
     const std::uint64_t passes = std::string(mode) == "dual" ? 151 : 301;
