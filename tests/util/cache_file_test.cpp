@@ -17,7 +17,7 @@ class CacheFile : public TemporaryFolder {
 
 TEST_F(CacheFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(readCached(path(), "key"), std::nullopt);
-  for (const std::string content :
+  for (const std::string& content :
        {std::string(), std::string("a\0b", 3), std::string(70000, 'x')}) {
     EXPECT_TRUE(writeCached(path(), "key", content));
     EXPECT_EQ(readCached(path(), "key"), content);
