@@ -43,7 +43,7 @@ void loadAndCheck(const std::filesystem::path& path) {
 Scene twoTriangles() {
   Scene scene;
   scene.materials.resize(1);
-  for (const auto [x, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}})
+  for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}})
     scene.vertices.push_back({{x, y, 0.0f}, 0, {0, 0}, ~0u, 0});
   scene.triangles = {{0, 1, 2}, {0, 2, 3}};
   return scene;
