@@ -62,9 +62,13 @@ def filter_by(browser, field, text):
 
 
 def point_of(browser, selector):
-    """The middle of an element in the window, which is scrolled to it."""
-    return browser.run("""const box = document.querySelector(arguments[0]);
-        box.scrollIntoView({block: 'center'}); const r = box.getBoundingClientRect();
+    """The middle of an element in the window, which is scrolled to it; left, top, width, height."""
+    browser.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
+    # A click goes to what the last frame shows, and the table makes rows when it hears of a scroll: both take
+    # a frame. The second frame from here shows what is there to stay.
+    browser.run("window.drawn = false; requestAnimationFrame(() => requestAnimationFrame(() => window.drawn = true))")
+    browser.wait("window.drawn")
+    return browser.run("""const r = document.querySelector(arguments[0]).getBoundingClientRect();
         return [r.left + r.width / 2, r.top + r.height / 2, r.left, r.top, r.width, r.height]""", selector)
 
 
