@@ -71,6 +71,7 @@ class ShaderVariants : public GpuTest {
 };
 
 TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
+  allowRefusals();  // of large local arrays
   // Colours of triangles, textures, and opaque surfaces: what lucid has separate code for.
   std::vector<std::unique_ptr<RenderFixture>> fixtures;
   for (const char* scene : {"planes", "scrubpine", "sanmiguel"})

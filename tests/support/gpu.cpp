@@ -20,10 +20,22 @@ void GpuTest::SetUp() {
   }
 }
 
+namespace {
+
+/// What NVIDIA's driver reports beside the error code when a shader needs more local memory than it
+/// gives (seen with 580.159.04). The validation layer begins its messages otherwise.
+bool isRefusal(const std::string& message) {
+  return message.starts_with("CreatePipeline: failed to validate local memory") ||
+         message.find("Pipeline: unexpected failure compiling SPIR-V shader") != message.npos;
+}
+
+}  // namespace
+
 void GpuTest::TearDown() {
   if (IsSkipped()) return;
   const auto messages = sharedDevice().validationMessages();
-  for (std::size_t i = messagesBefore_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+  for (std::size_t i = messagesBefore_; i < messages.size(); ++i)
+    if (!refusalsAllowed_ || !isRefusal(messages[i])) ADD_FAILURE() << messages[i];
 }
 
 RenderFixture::RenderFixture(Scene scene, std::uint32_t width, std::uint32_t height,
