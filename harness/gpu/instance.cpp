@@ -39,11 +39,30 @@ bool isShaderPrintf(const VkDebugUtilsMessengerCallbackDataEXT& data) {
          std::string_view(data.pMessageIdName).ends_with("DEBUG-PRINTF");
 }
 
-/// What the shader printed, without the text that the layer puts around it.
+/// What the shader printed, without the text that the layer puts around it: it stands behind the
+/// last bar (layers of 1.3), or behind a line that ends in this mark (layers of 1.4). Empty for
+/// what the layer says of itself under the same name.
 std::string_view printedText(std::string_view message) {
-  const std::size_t bar = message.rfind(" | ");
-  if (bar != std::string_view::npos) message.remove_prefix(bar + 3);
+  constexpr std::string_view mark = "DebugPrintf:\n", bar = " | ";
+  if (const auto at = message.find(mark); at != message.npos)
+    message.remove_prefix(at + mark.size());
+  else if (const auto last = message.rfind(bar); last != message.npos)
+    message.remove_prefix(last + bar.size());
+  else
+    return {};
   while (message.ends_with('\n')) message.remove_suffix(1);
+  return message;
+}
+
+/// The message, with the debug names of its objects: layers of 1.4 do not write them into it.
+std::string withNames(const VkDebugUtilsMessengerCallbackDataEXT& data) {
+  std::string message = data.pMessage;
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < data.objectCount; ++i)
+    if (const char* name = data.pObjects[i].pObjectName;
+        name != nullptr && message.find(name) == message.npos)
+      names.push_back(fmt::format("'{}'", name));
+  if (!names.empty()) message += fmt::format(" (of {})", fmt::join(names, ", "));
   return message;
 }
 
@@ -60,10 +79,11 @@ struct Instance::MessageLog {
     auto* log = static_cast<MessageLog*>(user);
     std::lock_guard lock(log->mutex);
     if (isShaderPrintf(*data)) {
-      fmt::print(stderr, "shader: {}\n", printedText(data->pMessage));
+      const std::string_view text = printedText(data->pMessage);
+      if (!text.empty()) fmt::print(stderr, "shader: {}\n", text);
     } else if (severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT) {
-      log->messages.emplace_back(data->pMessage);
-      fmt::print(stderr, "validation: {}\n", data->pMessage);
+      log->messages.push_back(withNames(*data));
+      fmt::print(stderr, "validation: {}\n", log->messages.back());
     }
     return VK_FALSE;
   }
