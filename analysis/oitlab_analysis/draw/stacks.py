@@ -172,7 +172,7 @@ def _largest(cells: pandas.DataFrame, own: list[str]) -> list[str]:
     """`77 MiB: nodes 61 %` for each cell: its whole memory and the largest of the method's buffers."""
     notes = []
     for _, row in cells.iterrows():
-        sizes = row[own].fillna(0).astype(float) if own else pandas.Series(dtype=float)
+        sizes = row[own].astype(float).fillna(0) if own else pandas.Series(dtype=float)
         text = f"{formats.mebibytes(row['memory_total_bytes'])} MiB"
         if sizes.sum() > 0:
             largest = sizes.idxmax()
