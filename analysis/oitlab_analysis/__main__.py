@@ -130,7 +130,7 @@ def run_histogram(source: Path, target: Path) -> int:
 
 
 def run_report(options: argparse.Namespace) -> tuple[str, int]:
-    from .draw.curves import Curve
+    from .draw.curve_lines import Curve
     from .read.sources import BadResults
     from .write.report import make_report
 

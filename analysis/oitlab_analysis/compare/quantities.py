@@ -16,6 +16,7 @@ import pandas
 from ..formats import natural_key, parameter
 from ..read.sources import BadResults
 from .metrics import METRICS, Metric, column, wrong_order_found
+from .special_values import Special
 
 
 @dataclass(frozen=True)
@@ -119,5 +120,7 @@ def varying(table: pandas.DataFrame) -> list[str]:
 
 
 def in_order(values: list) -> list:
-    """Distinct values by size, texts as a reader would sort them."""
-    return sorted(set(values), key=lambda v: natural_key(v) if isinstance(v, str) else v)
+    """Distinct values by size, texts as a reader would sort them; special values last."""
+    special = sorted({v for v in values if isinstance(v, Special)}, key=lambda v: v.value)
+    plain = {v for v in values if not isinstance(v, Special)}
+    return sorted(plain, key=lambda v: natural_key(v) if isinstance(v, str) else v) + special

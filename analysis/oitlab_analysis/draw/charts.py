@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from ..compare.metrics import METRICS
 from ..compare.sections import Section
 from . import bma_figures, curves, dots, quality_speed, stacks
-from .curves import ALPHA_THRESHOLD, DEPTH_FILTER, Curve
+from .curve_lines import ALPHA_THRESHOLD, DEPTH_FILTER, Curve
 from .style import STYLE, Chart, footnotes, hints_of, save
 
 # A chart takes 0.3 to 1 s in its three formats. A section has its first chart in any case, then more

@@ -216,6 +216,13 @@ def log_axis(axes: Axes, which: str, low: float, high: float, most: int = 4) -> 
     axis = axes.xaxis if which == "x" else axes.yaxis
     (axes.set_xscale if which == "x" else axes.set_yscale)("log")
     (axes.set_xlim if which == "x" else axes.set_ylim)(low, high)
+    axis.set_major_locator(FixedLocator(log_ticks(low, high, most)))
+    axis.set_major_formatter(lambda value, _: plain(value))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def log_ticks(low: float, high: float, most: int) -> list[float]:
+    """At most `most` round places from low to high, two at least."""
     ticks: list[float] = []
     for steps in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 6, 8)):
         ticks = [t for t in LogLocator(subs=steps).tick_values(low, high) if low <= t <= high]
@@ -225,9 +232,7 @@ def log_axis(axes: Axes, which: str, low: float, high: float, most: int = 4) -> 
         ticks = list(numpy.linspace(low, high, 4)[1:3])
     while len(ticks) > most:
         ticks = ticks[::2]
-    axis.set_major_locator(FixedLocator(ticks))
-    axis.set_major_formatter(lambda value, _: plain(value))
-    axis.set_minor_formatter(NullFormatter())
+    return ticks
 
 
 def linear_label(value: float) -> str:

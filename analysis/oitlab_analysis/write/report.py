@@ -13,7 +13,7 @@ from ..compare.clock import clock_summary
 from ..compare.sections import add_comparisons, make_sections, mixture_warnings
 from ..compare.tidy import as_table
 from ..draw.charts import save_charts
-from ..draw.curves import Curve, check
+from ..draw.curve_lines import Curve, check
 from ..read.cells import collect, left_out
 from .contents import Report, command_of, summary
 from .markdown import markdown_report

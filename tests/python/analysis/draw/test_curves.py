@@ -6,7 +6,8 @@ import numpy
 import pytest
 from oitlab_analysis.compare.quantities import find_quantity, varying
 from oitlab_analysis.draw import curves
-from oitlab_analysis.draw.curves import ALPHA_THRESHOLD, DEPTH_FILTER, Curve, check, draw_curves, lines_of
+from oitlab_analysis.draw.curve_lines import ALPHA_THRESHOLD, DEPTH_FILTER, Curve, check, lines_of
+from oitlab_analysis.draw.curves import draw_curves
 from oitlab_analysis.draw.style import TALLEST
 from oitlab_analysis.read.sources import BadResults
 from sections import drawn, section_of
@@ -153,8 +154,10 @@ def test_the_alpha_chart_shows_speed_ups(filters):
     figure = drawn(draw_curves, filters, ALPHA_THRESHOLD)
     assert len(figure.axes) == 2
     for axes in figure.axes:
-        assert list(axes.lines[0].get_ydata()) == [1, pytest.approx(2, rel=0.01)]
+        assert list(axes.lines[0].get_ydata()) == [pytest.approx(2, rel=0.01), 1]
+        assert [t.get_text() for t in axes.get_xticklabels()] == ["0.5", "never"], "0 means no threshold"
         assert axes.get_title(loc="left") in ("boxes", "teapot")
+    assert figure.axes[0].get_ylabel() == "speed-up against “never”"
 
 
 def test_there_is_no_curve_without_a_sweep(tmp_path):
