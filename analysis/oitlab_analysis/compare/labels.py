@@ -5,6 +5,8 @@ A setting is what all methods of one comparison share: scene, view, size and for
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pandas
 
 from ..formats import is_number, natural_key, parameter
@@ -49,15 +51,48 @@ def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
             for method, row in zip(counts.index, varying)}
 
 
-def local_labels(table: pandas.DataFrame) -> list[str]:
-    """Labels of the methods by what differs among these rows alone; those of the table where two of
-    these would be alike."""
-    varying = varying_parameters(table)
-    labels = []
-    for row in records(table):
-        chosen = {k: v for k, v in parameters_of(row).items() if k in varying[row["method"]]}
-        labels.append(row["method"] + (f" ({parameter_text(chosen)})" if chosen else ""))
-    return labels if len(set(labels)) == len(labels) else table["label"].tolist()
+def short_labels(table: pandas.DataFrame) -> tuple[dict[str, str], str]:
+    """Names for a chart of these rows, by label, and what its caption must say of them, or "".
+
+    What all variants of a method in the chart have in common is not named. A value that more than half of
+    them have is named once, in the caption: `abuffer`, `abuffer (sort=merge)`, and "Where a name does not
+    say otherwise, abuffer has sort=auto."
+    """
+    variants = table.drop_duplicates("label")
+    varying = varying_parameters(variants)
+    names: dict[str, str] = {}
+    usual: dict[str, str] = {}
+    for method, cells in variants.groupby("method", sort=False):
+        texts = [{name: parameter(value) for name, value in parameters_of(row).items() if name in varying[method]}
+                 for row in records(cells)]
+        most = _held_by_most(texts)
+        labels = cells["label"].tolist()
+        short = [_name(method, {k: v for k, v in own.items() if most.get(k) != v}, label)
+                 for own, label in zip(texts, labels)]
+        if len(set(short)) < len(short):  # a variant that lacks a parameter that others have
+            short, most = labels, {}
+        names |= dict(zip(labels, short))
+        if most:
+            usual[method] = parameter_text(most)
+    said = "; ".join(f"{method} has {text}" for method, text in usual.items())
+    return names, f"Where a name does not say otherwise, {said}." if said else ""
+
+
+def _held_by_most(texts: list[dict[str, str]]) -> dict[str, str]:
+    """The values that more than half of the variants have, by parameter."""
+    found = {}
+    for name in dict.fromkeys(name for own in texts for name in own):
+        value, count = Counter(own.get(name) for own in texts).most_common(1)[0]
+        if value is not None and 2 * count > len(texts):
+            found[name] = value
+    return found
+
+
+def _name(method: str, parameters: dict[str, str], label: str) -> str:
+    """The name of a variant with the number, if its label has one (add_labels())."""
+    number = label.rpartition(" #")[2]
+    text = f"{method} ({parameter_text(parameters)})" if parameters else method
+    return f"{text} #{number}" if number.isdigit() and label.endswith(f" #{number}") else text
 
 
 def scene_label(row: dict, knobs: list[str]) -> str:

@@ -28,11 +28,13 @@ FEW_CHARTS = 4
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of chart: its caption, how many a section takes, and how one is drawn."""
+    """A kind of chart: its caption, how many a section takes, how one is drawn, and what the caption says
+    of the names in it."""
 
     caption: str
     pages: Callable[[Section, str], int]
     draw: Callable[[Section, int, str], Figure | None]
+    note: Callable[[Section, str], str] = lambda section, metric: ""
 
 
 def _curves(caption: str, asked: tuple[Curve, ...]) -> Kind:
@@ -60,18 +62,22 @@ def _bma_figure(number: int) -> Kind:
 
 # In the order of the page: the first that a section has is the one that stands above its table.
 KINDS = {
-    "quality-speed": Kind(quality_speed.OVERALL_CAPTION, quality_speed.has_overall, quality_speed.draw_overall),
-    "quality-speed-scenes": Kind(quality_speed.CAPTION, quality_speed.pages, quality_speed.draw_scenes),
+    "quality-speed": Kind(quality_speed.OVERALL_CAPTION, quality_speed.has_overall, quality_speed.draw_overall,
+                          quality_speed.overall_note),
+    "quality-speed-scenes": Kind(quality_speed.CAPTION, quality_speed.pages, quality_speed.draw_scenes,
+                                 quality_speed.note),
     "depth-filter": _curves(
         "Depth filter of `lucid`: pixels that come out in the wrong order without repair, and frame time "
         "against that with a filter of 3 (intervals: 95%, of paired blocks).", DEPTH_FILTER),
     "alpha-threshold": _curves(
         "Alpha threshold of `lucid`: speed-up against shading every sample (intervals: 95%, of paired "
         "blocks).", ALPHA_THRESHOLD),
-    "frame-times": Kind(dots.CAPTION, lambda section, metric: dots.pages(section), dots.draw_frame_times),
-    "stages": Kind(stacks.STAGE_CAPTION, lambda section, metric: stacks.stage_pages(section), stacks.draw_stages),
+    "frame-times": Kind(dots.CAPTION, lambda section, metric: dots.pages(section), dots.draw_frame_times,
+                        lambda section, metric: dots.note(section)),
+    "stages": Kind(stacks.STAGE_CAPTION, lambda section, metric: stacks.stage_pages(section), stacks.draw_stages,
+                   lambda section, metric: stacks.stage_note(section)),
     "memory": Kind(stacks.MEMORY_CAPTION, lambda section, metric: stacks.memory_pages(section),
-                   stacks.draw_memory),
+                   stacks.draw_memory, lambda section, metric: stacks.memory_note(section)),
 } | {f"bma-figure{number}": _bma_figure(number) for number in BMA_CAPTIONS}
 
 
@@ -161,7 +167,8 @@ def _save_chart(index: int, folder: Path, metric: str) -> Chart | None:
         said = task.kind.caption
         for word, text in words.items():  # not format(): a caption may hold what a user typed
             said = said.replace(f"{{{word}}}", str(text))
-        caption = f"{said}{part} {footnotes(task.section)}"
+        caption = " ".join(filter(None, [f"{said}{part}", task.kind.note(task.section, metric),
+                                         footnotes(task.section)]))
         hints = hints_of(figure)
         save(figure, folder / name, caption)
     return Chart(name, caption, hints)

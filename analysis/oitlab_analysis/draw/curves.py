@@ -23,6 +23,7 @@ from .style import DASHES, series_look
 from .x_axis import XAxis
 
 PANELS_PER_CHART = 12
+MOST_HANDLES = 24  # entries of a legend: looks come again after as many
 LOG_ABOVE = 30  # span of values from which on the y axis is logarithmic
 
 
@@ -95,7 +96,7 @@ def _draw_panel(axes: Axes, section: Section, curve: Curve, lines: list[Line], l
         if not own:
             continue
         inside = [(at, _floored(axes, value, y, related)) for at, value, _, _ in own if value <= top]
-        axes.plot(*zip(*inside) if inside else ([], []), markersize=3.5, linewidth=1, **look)
+        axes.plot(*zip(*inside) if inside else ([], []), markersize=3.5, linewidth=1, clip_on=False, **look)
         sure = [(at, low, high) for at, value, low, high in own if low is not None and value <= top]
         if sure:
             axes.vlines([s[0] for s in sure], [s[1] for s in sure], [s[2] for s in sure],
@@ -193,5 +194,9 @@ def _handles(looks: dict[tuple[str, str], dict]) -> list[Line2D]:
     names = {pair: ", ".join(part for part in pair if part) for pair in looks}
     if len(names) == 1:
         return []
-    return [Line2D([], [], markersize=3.5, linewidth=1, label=name or "–", **looks[pair])
-            for pair, name in names.items()]
+    handles = [Line2D([], [], markersize=3.5, linewidth=1, label=name or "–", **looks[pair])
+               for pair, name in names.items()]
+    if len(handles) <= MOST_HANDLES:
+        return handles
+    more = Line2D([], [], linestyle="none", label=f"and {len(handles) - MOST_HANDLES + 1} more")
+    return [*handles[:MOST_HANDLES - 1], more]

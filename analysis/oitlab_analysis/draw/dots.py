@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .. import formats
-from ..compare.labels import records
+from ..compare.labels import records, short_labels
 from ..compare.sections import Section
 from .layout import (
     HALO,
@@ -36,7 +36,7 @@ from .style import GRID, PAGE, TALLEST
 LOG_ABOVE = 4  # span of times from which on the axis is logarithmic
 ROW, BETWEEN, LINE = 0.095, 0.07, 0.13  # inches: a row, the room between bands, a line of a band's name
 NAMES = 1.6  # inches left of the axes
-TALLEST_PAGE = TALLEST - 1.6  # inches of bands: what a legend and the axis leave
+MOST_LEGEND = 3.0  # inches: variants are named while the legend is no taller
 CAPTION = ("Frame times: medians with their 95% intervals, a band for each scene and setting with a row for "
            "each method.")
 
@@ -44,14 +44,16 @@ CAPTION = ("Frame times: medians with their 95% intervals, a band for each scene
 def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
     """The settings of a section in charts of about equal height; a setting that is too long for one
     is taken apart."""
-    parts = [(name, part) for name, cells in section.settings() for part in _parts(cells)]
+    parts = [(name, part) for name, cells in section.settings()
+             for part in _parts(cells, _room(section))]
     total = sum(_height(name, cells) for name, cells in parts)
-    target = total / math.ceil(total / TALLEST_PAGE)
+    room = _room(section)
+    target = total / math.ceil(total / room)
     pages: list[list] = [[]]
     height = 0.0
     for name, cells in parts:
         own = _height(name, cells)
-        if pages[-1] and (height + own / 2 > target or height + own > TALLEST_PAGE):
+        if pages[-1] and (height + own / 2 > target or height + own > room):
             pages.append([])
             height = 0.0
         pages[-1].append((name, cells))
@@ -63,13 +65,25 @@ def pages(section: Section) -> int:
     return len(paginate(section))
 
 
+def note(section: Section) -> str:
+    """What the caption must say of the names, or ""."""
+    return short_labels(section.table[section.table["status"] == "ok"])[1]
+
+
 def _name_lines(name: str) -> list[str]:
     return textwrap.wrap(name, characters(NAMES - 0.1, 8)) or [""]
 
 
-def _parts(cells: pandas.DataFrame) -> list[pandas.DataFrame]:
+def _room(section: Section) -> float:
+    """Inches of bands on a page: what the legend of all that was measured and the axis leave."""
+    table = section.table[section.table["status"] == "ok"]
+    handles = _handles(set(table["label"]), looks_of(table), short_labels(table)[0])
+    return TALLEST - TICKS - LABEL - legend_height([handle.get_label() for handle in handles], PAGE)
+
+
+def _parts(cells: pandas.DataFrame, room: float) -> list[pandas.DataFrame]:
     """The cells in parts of at most as many methods as have a row on one page."""
-    most = int((TALLEST_PAGE - BETWEEN) / ROW)
+    most = int((room - BETWEEN) / ROW)
     methods = cells["method"].unique()
     return [cells[cells["method"].isin(methods[start:start + most])] for start in range(0, len(methods), most)]
 
@@ -85,7 +99,8 @@ def draw_frame_times(section: Section, page: int, metric: str = "") -> Figure | 
         return None
     looks = looks_of(table)
     bands = paginate(section)[page]
-    handles = _handles({label for _, cells in bands for label in cells["label"]}, looks)
+    names, _ = short_labels(table)
+    handles = _handles({label for _, cells in bands for label in cells["label"]}, looks, names)
     legend = legend_height([handle.get_label() for handle in handles], PAGE)
     height = sum(_height(name, cells) for name, cells in bands)
     total = legend + height + TICKS + LABEL
@@ -93,7 +108,7 @@ def draw_frame_times(section: Section, page: int, metric: str = "") -> Figure | 
     axes = figure.add_axes((NAMES / PAGE, (TICKS + LABEL) / total, (PAGE - NAMES - 0.1) / PAGE, height / total))
     axes.set_ylim(height, 0)
     limit = _set_time_axis(axes, table)
-    middles, names, rows, y = [], [], [], 0.0
+    middles, titles, rows, y = [], [], [], 0.0
     for index, (name, cells) in enumerate(bands):
         own, methods = _height(name, cells), list(cells["method"].unique())
         if index % 2:
@@ -101,10 +116,10 @@ def draw_frame_times(section: Section, page: int, metric: str = "") -> Figure | 
         top = y + (own - len(methods) * ROW) / 2
         rows += [(top + (methods.index(row["method"]) + 0.5) * ROW, row) for row in records(cells)]
         middles.append(y + own / 2)
-        names.append("\n".join(_name_lines(name)))
+        titles.append("\n".join(_name_lines(name)))
         y += own
-    _draw_rows(axes, rows, looks, limit)
-    axes.set_yticks(middles, names, size=8)
+    _draw_rows(axes, rows, looks, names, limit)
+    axes.set_yticks(middles, titles, size=8)
     axes.tick_params(axis="y", length=0)
     axes.tick_params(axis="x", labelsize=7.5)
     axes.grid(axis="x", **GRID)
@@ -131,7 +146,8 @@ def _set_time_axis(axes: Axes, table: pandas.DataFrame) -> float:
     return limit
 
 
-def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: float) -> None:
+def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, names: dict[str, str],
+               limit: float) -> None:
     """All dots of one look at once: an artist for each would be slow."""
     measured = [(y, row) for y, row in rows if row["status"] == "ok"]
     by_look: dict[tuple, list[tuple[float, dict]]] = {}
@@ -148,8 +164,8 @@ def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: f
         axes.plot([row["frame_ms.median"] for _, row in inside], heights, linestyle="none",
                   marker=look["marker"], color=look["color"], markersize=4.2, markeredgecolor="black",
                   markeredgewidth=0.35)
-        mark_beyond(axes, [(0, y, f"{row['label']}: {formats.number(row['frame_ms.median'])}") for y, row in own
-                           if row["frame_ms.median"] > limit], "x", "black")
+        mark_beyond(axes, [(0, y, f"{names[row['label']]}: {formats.number(row['frame_ms.median'])}")
+                           for y, row in own if row["frame_ms.median"] > limit], "x", "black")
     unmeasured: dict[float, list[dict]] = {}
     for y, row in rows:
         if row["status"] != "ok":
@@ -161,14 +177,15 @@ def _draw_rows(axes: Axes, rows: list[tuple[float, dict]], looks: dict, limit: f
                       color="#a40e26", path_effects=HALO)
 
 
-def _handles(shown: set[str], looks: dict) -> list[Line2D]:
-    """Every variant by name; only the method where it has many."""
-    handles = []
-    for method in dict.fromkeys(look["method"] for label, look in looks.items() if label in shown):
-        own = {label: look for label, look in looks.items() if look["method"] == method and label in shown}
-        if len(own) > 2 * MOST_VARIANTS_NAMED:
-            own = {f"{method} ({len(own)} variants)": next(iter(own.values()))}
-        handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
-                           markeredgecolor="black", markeredgewidth=0.35, label=label)
-                    for label, look in own.items()]
-    return handles
+def _handles(shown: set[str], looks: dict, names: dict[str, str]) -> list[Line2D]:
+    """Every variant by name; only the method where it has many, or where the legend would be too tall."""
+    for most in (2 * MOST_VARIANTS_NAMED, MOST_VARIANTS_NAMED, 1):
+        entries: dict[str, dict] = {}
+        for method in dict.fromkeys(look["method"] for label, look in looks.items() if label in shown):
+            own = {names[label]: look for label, look in looks.items()
+                   if look["method"] == method and label in shown}
+            entries |= own if len(own) <= most else {f"{method} ({len(own)} variants)": next(iter(own.values()))}
+        if legend_height(list(entries), PAGE) <= MOST_LEGEND:
+            break
+    return [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+                   markeredgecolor="black", markeredgewidth=0.35, label=label) for label, look in entries.items()]

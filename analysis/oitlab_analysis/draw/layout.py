@@ -22,6 +22,7 @@ TITLE_LINE, LEGEND_LINE, TICKS, LABEL = 0.15, 0.133, 0.26, 0.22
 LEFT, GAP = 0.68, 0.32
 TITLE_SIZE = 8
 CHARACTER = 0.6  # of the font size: the mean width of a character of DejaVu Sans
+LEGEND_CHARACTERS = 46  # two columns of the page
 MOST_TITLE_LINES = 3
 MOST_LABELS = 60  # points of one panel that a label is tried for
 HALO = [withStroke(linewidth=1.6, foreground="white")]  # a text over a line stays legible
@@ -52,6 +53,16 @@ def panel_titles(names: Sequence[str], width: int) -> list[str]:
     return titles
 
 
+def wrap_label(label: str, width: int) -> str:
+    """`lucid (a=1, b=2)` in lines of about `width` characters. No line ends in a comma: the break says it."""
+    lines = [""]
+    for part in label.split(", "):
+        longer = f"{lines[-1]}, {part}" if lines[-1] else part
+        lines = [*lines[:-1], longer] if len(longer) <= width or not lines[-1] else [*lines, part]
+    return "\n".join(piece for line in lines for piece in textwrap.wrap(line, width, break_long_words=False,
+                                                                        break_on_hyphens=False) or [""])
+
+
 def _common_words(names: list[str]) -> int:
     """How many characters all names begin with in common, to the end of a word."""
     common = 0
@@ -65,21 +76,32 @@ def _common_words(names: list[str]) -> int:
 
 def legend_columns(labels: Sequence[str], width: float, size: float = 7) -> int:
     """In how many columns the entries of a legend fit into a width in inches."""
-    longest = max(map(len, labels), default=0)
+    longest = max((len(line) for label in labels for line in label.split("\n")), default=0)
     return max(1, min(len(labels), characters(width, size) // (longest + 6)))
+
+
+def legend_labels(labels: Sequence[str]) -> list[str]:
+    """The entries as a legend has them: long ones take two lines rather than the room of a column."""
+    return [wrap_label(label, LEGEND_CHARACTERS) for label in labels]
 
 
 def legend_height(labels: Sequence[str], width: float) -> float:
     """In inches; 0 without entries."""
-    return math.ceil(len(labels) / legend_columns(labels, width)) * LEGEND_LINE + 0.08 if labels else 0.0
+    if not labels:
+        return 0.0
+    lines = [label.count("\n") + 1 for label in legend_labels(labels)]
+    columns = legend_columns(legend_labels(labels), width)
+    rows, longer = divmod(len(lines), columns)  # the first columns have one entry more
+    starts = [column * rows + min(column, longer) for column in range(columns + 1)]
+    return max(sum(lines[first:last]) for first, last in zip(starts, starts[1:])) * LEGEND_LINE + 0.08
 
 
 def add_legend(figure: Figure, handles: Sequence, size: float = 7) -> None:
     """A legend at the top left of the figure."""
     if handles:
-        labels = [handle.get_label() for handle in handles]
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), frameon=False, fontsize=size,
-                      ncol=legend_columns(labels, figure.get_figwidth(), size), borderaxespad=0.1,
+        labels = legend_labels([handle.get_label() for handle in handles])
+        figure.legend(handles=handles, labels=labels, loc="upper left", bbox_to_anchor=(0, 1), frameon=False,
+                      fontsize=size, ncol=legend_columns(labels, figure.get_figwidth(), size), borderaxespad=0.1,
                       handletextpad=0.5, columnspacing=1.2, labelspacing=0.35)
 
 
@@ -150,10 +172,10 @@ def mark_beyond(axes: Axes, places: Sequence[tuple[float, float, str]], along: s
 def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], size: float = 6.5,
                  lines: Sequence[tuple[float, float, float, float]] = ()) -> list[bool]:
     """Writes (x, y, text, colour) beside each point where it covers neither a point nor a label, nor one
-    of the upright and level `lines` (x0, y0, x1, y1).
+    of the upright and level `lines` (x0, y0, x1, y1). A point without text is only kept free.
 
-    Earlier points choose first; what finds no place stays without its label. Returns which were
-    written. The limits of the axes must be set.
+    Earlier points choose first; what finds no place stays without its label. Returns for each point whether
+    its text was written. The limits of the axes must be set.
     """
     figure = axes.get_figure()
     scale = 72 / figure.dpi
@@ -165,8 +187,10 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
         (u0, v0), (u1, v1) = axes.transData.transform([(x0, y0), (x1, y1)]) * scale
         marks.append((min(u0, u1), min(v0, v1) - 0.5, max(u0, u1), max(v0, v1) + 0.5))
     taken = numpy.asarray(marks).reshape(-1, 4)
-    written = []
-    for (x, y, text, colour), (px, py) in list(zip(points, at))[:MOST_LABELS]:
+    written = [False] * len(points)
+    labelled = [index for index, (_, _, text, _) in enumerate(points) if text]
+    for index in labelled[:MOST_LABELS]:
+        (x, y, text, colour), (px, py) = points[index], at[index]
         lines = text.split("\n")
         width = max(map(len, lines)) * size * CHARACTER
         height = len(lines) * size * 1.2
@@ -180,10 +204,8 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
                 axes.annotate(text, (x, y), (dx, dy), textcoords="offset points", ha=horizontal, va=vertical,
                               size=size, color=darker(colour), linespacing=1.0, zorder=4,
                               annotation_clip=False, path_effects=HALO)
-                written.append(True)
+                written[index] = True
                 break
-        else:
-            written.append(False)
     return written
 
 

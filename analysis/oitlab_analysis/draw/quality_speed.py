@@ -6,8 +6,6 @@ Errors are on a log axis; images without any stand on its lower end, which is ma
 
 from __future__ import annotations
 
-import textwrap
-
 import numpy
 import pandas
 from matplotlib.axes import Axes
@@ -17,9 +15,10 @@ from matplotlib.ticker import FixedLocator, NullFormatter
 
 from .. import formats
 from ..compare.device_notes import NOTED
+from ..compare.labels import short_labels
 from ..compare.metrics import METRICS, Metric
 from ..compare.sections import Section
-from .layout import log_axis, mark_beyond, panel_grid, place_labels, robust_limit
+from .layout import log_axis, mark_beyond, panel_grid, place_labels, robust_limit, wrap_label
 from .style import MARKERS, mark_point, method_looks
 
 PANELS_PER_CHART = 12
@@ -66,6 +65,20 @@ def scored(section: Section, metric: Metric) -> pandas.DataFrame:
     return table[(table["status"] == "ok") & table["error"].notna()]
 
 
+def note(section: Section, name: str) -> str:
+    """What the caption of the scenes must say of their names, or ""."""
+    return short_labels(scored(section, METRICS[name]))[1]
+
+
+def overall_note(section: Section, name: str) -> str:
+    return short_labels(_of_overall(section, METRICS[name]))[1]
+
+
+def _of_overall(section: Section, metric: Metric) -> pandas.DataFrame:
+    """The cells of the variants that overall() has."""
+    return section.table[section.table["label"].isin(overall(section, metric)["label"])]
+
+
 def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
     """A panel for each setting of this page; None if no image was scored."""
     metric = METRICS[name]
@@ -75,14 +88,16 @@ def draw_scenes(section: Section, page: int, name: str) -> Figure | None:
     if not groups:
         return None
     floor, looks = error_floor(table["error"]), looks_of(table)
+    names, _ = short_labels(table)
     alone = len(groups) == 1
     columns = 1 if alone else 2 if len(groups) in (2, 4) else PANEL_COLUMNS
     height = 3.2 if alone else 2.2 if len(groups) <= 4 else 1.55
-    figure, all_axes = panel_grid([setting for setting, _ in groups], columns, height, _handles(table, looks))
+    figure, all_axes = panel_grid([setting for setting, _ in groups], columns, height,
+                                  _handles(table, looks, names))
     for index, (axes, (_, cells)) in enumerate(zip(all_axes, groups)):
         times = cells["frame_ms.median"].to_numpy(dtype=float)
         ends = [cells[f"frame_ms.ci_{end}"].to_numpy(dtype=float) for end in ("low", "high")]
-        _draw_points(axes, cells, times, ends, looks, floor, metric, table["error"], not alone)
+        _draw_points(axes, cells, times, ends, looks, names, floor, metric, table["error"], not alone)
         if index % columns == 0:
             axes.set_ylabel(metric.label, size=8)
         else:
@@ -137,9 +152,10 @@ def draw_overall(section: Section, page: int, name: str) -> Figure | None:
     metric = METRICS[name]
     table = overall(section, metric)
     looks, floor = looks_of(table), error_floor(table["error"])
-    figure, (axes,) = panel_grid([""], 1, 3.2, _handles(table, looks))
+    names, _ = short_labels(_of_overall(section, metric))
+    figure, (axes,) = panel_grid([""], 1, 3.2, _handles(table, looks, names))
     ratios, ends = table["ratio"].to_numpy(dtype=float), [table[end].to_numpy(dtype=float) for end in ("low", "high")]
-    _draw_points(axes, table, ratios, ends, looks, floor, metric, table["error"], False)
+    _draw_points(axes, table, ratios, ends, looks, names, floor, metric, table["error"], False)
     axes.set_ylabel(f"{metric.label} (mean)", size=8)
     noted = NOTED if (section.table["device_note"] != "").any() else ""
     axes.set_xlabel(f"time over that of the baseline{noted} (log scale)", size=8)
@@ -147,7 +163,7 @@ def draw_overall(section: Section, page: int, name: str) -> Figure | None:
 
 
 def _draw_points(axes: Axes, cells: pandas.DataFrame, times: numpy.ndarray, ends: list[numpy.ndarray],
-                 looks: dict, floor: float, metric: Metric, all_errors: pandas.Series, briefly: bool) -> None:
+                 looks: dict, names: dict[str, str], floor: float, metric: Metric, all_errors: pandas.Series, briefly: bool) -> None:
     """Points with intervals, hints for the pointer, the front, and labels where they find room."""
     errors = numpy.maximum(cells["error"].to_numpy(dtype=float), floor)
     labels = cells["label"].tolist()
@@ -169,14 +185,15 @@ def _draw_points(axes: Axes, cells: pandas.DataFrame, times: numpy.ndarray, ends
                                markeredgecolor="black", markeredgewidth=0.4, zorder=3, clip_on=False,
                                color=looks[label]["color"], marker=looks[label]["marker"])
             mark_point(point, _hint(label, times[index], cells["error"].iloc[index], metric))
-    mark_beyond(axes, [(times[i], errors[i], f"{labels[i]}: {formats.number(times[i])}")
+    mark_beyond(axes, [(times[i], errors[i], f"{names[labels[i]]}: {formats.number(times[i])}")
                        for i in range(len(times)) if not inside[i]], "x", "black")
     front = pareto_front(times, errors)
     axes.step(times[front], errors[front], where="post", **FRONT)
     wanted = [*front, *(i for i in range(len(times)) if i not in front)]
-    names = point_names(cells, wanted, briefly)
-    place_labels(axes, [(times[i], errors[i], names[i], colours[i]) for i in wanted if inside[i] and names[i]],
-                 5.8 if briefly else 6.5, _corners(times[front], errors[front]))
+    texts = point_names(cells, names, wanted, briefly)
+    bars = [(ends[0][i], errors[i], ends[1][i], errors[i]) for i in sure] if len(times) <= MOST_BARS else []
+    place_labels(axes, [(times[i], errors[i], texts[i], colours[i]) for i in wanted if inside[i]],
+                 5.8 if briefly else 6.5, [*_corners(times[front], errors[front]), *bars])
 
 
 def _corners(times: numpy.ndarray, errors: numpy.ndarray) -> list[tuple[float, float, float, float]]:
@@ -191,21 +208,21 @@ def _hint(label: str, time: float, error: float, metric: Metric) -> str:
     return f"{label}: {formats.number(time)}, {metric.label} {shown}"
 
 
-def point_names(cells: pandas.DataFrame, order: list[int], briefly: bool) -> list[str]:
-    """What stands at each point: its label, or where all are of one method what tells them apart. Where
-    labels are long, and `briefly`, it is the method, at the first of its points in this order."""
-    methods, labels = cells["method"].tolist(), cells["label"].tolist()
+def point_names(cells: pandas.DataFrame, names: dict[str, str], order: list[int], briefly: bool) -> list[str]:
+    """What stands at each point: its name, or where all are of one method what tells them apart. Where
+    names are long, and `briefly`, it is the method, at the first of its points in this order."""
+    methods, shown = cells["method"].tolist(), [names[label] for label in cells["label"]]
     one = len(set(methods)) == 1
     if one:
-        labels = [label.removeprefix(method).strip().removeprefix("(").removesuffix(")") or label
-                  for method, label in zip(methods, labels)]
-    names = ["\n".join(textwrap.wrap(label, LABEL_CHARACTERS, break_long_words=False)) for label in labels]
+        shown = [name.removeprefix(method).strip().removeprefix("(").removesuffix(")") or name
+                 for method, name in zip(methods, shown)]
+    texts = [wrap_label(name, LABEL_CHARACTERS) for name in shown]
     named = set()
     for index in order:
-        if not one and (briefly or names[index].count("\n") > 1):
-            names[index] = "" if methods[index] in named else methods[index]
+        if not one and (briefly or texts[index].count("\n") > 1):
+            texts[index] = "" if methods[index] in named else methods[index]
             named.add(methods[index])
-    return names
+    return texts
 
 
 def error_floor(errors: pandas.Series) -> float:
@@ -248,7 +265,7 @@ def looks_of(table: pandas.DataFrame) -> dict[str, dict]:
     return looks
 
 
-def _handles(table: pandas.DataFrame, looks: dict) -> list[Line2D]:
+def _handles(table: pandas.DataFrame, looks: dict, names: dict[str, str]) -> list[Line2D]:
     """Legend entries: every variant by name, or only the method where it has many."""
     handles = []
     for method in dict.fromkeys(look["method"] for look in looks.values()):
@@ -256,6 +273,8 @@ def _handles(table: pandas.DataFrame, looks: dict) -> list[Line2D]:
         if len(own) > MOST_VARIANTS_NAMED:
             first = next(iter(own.values()))
             own = {f"{method} ({len(own)} variants)": first | {"marker": "s"}}
+        else:
+            own = {names[label]: look for label, look in own.items()}
         handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"],
                            markersize=5, markeredgecolor="black", markeredgewidth=0.4, label=label)
                     for label, look in own.items()]

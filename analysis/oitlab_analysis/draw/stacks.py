@@ -5,8 +5,6 @@ The vertical unit is the inch: bars keep their thickness and texts their room ho
 
 from __future__ import annotations
 
-import textwrap
-
 import numpy
 import pandas
 from matplotlib.axes import Axes
@@ -15,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .. import formats
-from ..compare.labels import local_labels
+from ..compare.labels import short_labels
 from ..compare.memory import PREFIX
 from ..compare.sections import Section
 from .layout import (
@@ -28,6 +26,7 @@ from .layout import (
     panel_titles,
     plain,
     robust_limit,
+    wrap_label,
 )
 from .style import COLOURS, GRID, HATCHES, PAGE, TALLEST
 
@@ -75,7 +74,7 @@ def with_shared(table: pandas.DataFrame) -> tuple[pandas.DataFrame, list[str]]:
 def _stage_cells(section: Section) -> list[tuple[str, pandas.DataFrame]]:
     columns = stage_columns(section.table)
     found = [(name, cells[cells[columns].notna().any(axis=1)]) for name, cells in section.settings()]
-    return [(name, cells) for name, cells in found if len(cells)] if columns else []
+    return _named(found) if columns else []
 
 
 def _memory_cells(section: Section) -> list[tuple[str, pandas.DataFrame]]:
@@ -83,7 +82,26 @@ def _memory_cells(section: Section) -> list[tuple[str, pandas.DataFrame]]:
     columns = buffer_columns(section.table)
     found = [(name, cells[cells["status"] == "ok"].drop_duplicates(["method", *columns]))
              for name, cells in section.settings()]
-    return [(name, cells) for name, cells in found if len(cells)] if columns else []
+    return _named(found) if columns else []
+
+
+def _named(settings: list[tuple[str, pandas.DataFrame]]) -> list[tuple[str, pandas.DataFrame]]:
+    """The settings that have cells, with the `name` of each cell in the chart."""
+    names, _ = short_labels(pandas.concat([cells for _, cells in settings]))
+    return [(setting, cells.assign(name=cells["label"].map(names))) for setting, cells in settings if len(cells)]
+
+
+def _note(settings: list[tuple[str, pandas.DataFrame]]) -> str:
+    return short_labels(pandas.concat([cells for _, cells in settings]))[1] if settings else ""
+
+
+def stage_note(section: Section) -> str:
+    """What the caption of the stages must say of the names, or ""."""
+    return _note(_stage_cells(section))
+
+
+def memory_note(section: Section) -> str:
+    return _note(_memory_cells(section))
 
 
 def _paginate(settings: list[tuple[str, pandas.DataFrame]]) -> list[list[tuple[str, pandas.DataFrame]]]:
@@ -236,7 +254,7 @@ def _draw_panel(axes: Axes, cells: pandas.DataFrame, styles: dict[str, tuple[str
                       ha="right" if beyond else "left", size=6.2,
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 1} if beyond else None)
     axes.set_ylim(len(cells) - 0.45, -0.55)
-    labels, size = _fitting(local_labels(cells))
+    labels, size = _fitting(cells["name"].tolist())
     axes.set_yticks(rows, labels, size=size)
     axes.tick_params(axis="y", length=0)
     axes.tick_params(axis="x", labelsize=7)
@@ -255,4 +273,4 @@ def _fitting(names: list[str]) -> tuple[list[str], float]:
     size = 5
     room = 2 * characters(NAMES, size) - 14  # lines break at words
     cut = [name if len(name) <= room else f"{name[:room // 2 - 1]} … {name[-(room // 2 - 2):]}" for name in names]
-    return ["\n".join(textwrap.wrap(name, characters(NAMES, size), break_on_hyphens=False)) for name in cut], size
+    return [wrap_label(name, characters(NAMES, size)) for name in cut], size

@@ -14,7 +14,10 @@ from .style import PAGE
 
 LOG_ABOVE = 20  # span of values from which on the axis is logarithmic
 APART = 0.15  # of the length of the scale: how far beyond it a special value stands
+MARGIN = 0.05  # of the length of the axis, on both sides
 MOST_TICKS = 6
+MOST_NAMED = 8  # numbers with a tick each
+CROWDED = 0.07  # of the length of the scale: numbers that are closer have no room for their ticks
 
 
 class XAxis:
@@ -25,8 +28,9 @@ class XAxis:
         self._numbers = [place for place in self._places if not isinstance(place, Special)]
         self._specials = self._places[len(self._numbers):]
         few = bool(self._specials) and len(self._numbers) < 2
-        self._even = not is_number or few or _uneven(self._numbers)
-        self._log = not self._even and self._numbers[0] > 0 and self._numbers[-1] / self._numbers[0] > LOG_ABOVE
+        self._log = is_number and not few and self._numbers[0] > 0 and \
+            self._numbers[-1] / self._numbers[0] > LOG_ABOVE
+        self._even = not self._log and (not is_number or few or _uneven(self._numbers))
         if self._even:
             at = range(len(self._places))
         else:
@@ -48,9 +52,12 @@ class XAxis:
             _name_places(axes, self._places)
         elif self._log:
             log_axis(axes, "x", self._numbers[0] / 1.1, self._beyond(len(self._specials)) * 1.1, MOST_TICKS)
-        elif not self._specials:
+        else:
+            first, last = self._numbers[0], self._beyond(len(self._specials))
+            margin = MARGIN * (last - first) or 0.5
+            axes.set_xlim(first - margin, last + margin)
+            axes.xaxis.set_major_locator(FixedLocator(self._ticks()))
             axes.xaxis.set_major_formatter(lambda value, _: linear_label(value))
-            axes.xaxis.get_major_locator().set_params(integer=self._whole())
         if not self._specials:
             return
         if not self._even:
@@ -58,29 +65,31 @@ class XAxis:
         edge = self.at(self._specials[0]) - 0.5 if self._even else self._beyond(0.5)
         axes.axvline(edge, color="#777777", linewidth=0.7, linestyle=":", zorder=0.5)
 
-    def _whole(self) -> bool:
-        return all(float(number).is_integer() for number in self._numbers)
-
-    def _name_specials(self, axes: Axes) -> None:
-        """Ticks for the numbers as without special values, then one with the word of each of these."""
+    def _ticks(self) -> list[float]:
+        """Where the numbers have ticks: at each of them if they are few, else at round places."""
         first, last = self._numbers[0], self._numbers[-1]
         if self._log:
-            ticks = [tick for tick in log_ticks(first / 1.1, last * 1.1, MOST_TICKS)]
-        else:
-            ticks = MaxNLocator(MOST_TICKS, integer=self._whole()).tick_values(first, last)
-            ticks = [tick for tick in ticks if first <= tick <= last]
+            return log_ticks(first / 1.1, last * 1.1, MOST_TICKS)
+        if len(self._numbers) <= MOST_NAMED and min(numpy.diff(self._numbers), default=1) >= CROWDED * (last - first):
+            return self._numbers
+        whole = all(float(number).is_integer() for number in self._numbers)
+        ticks = MaxNLocator(MOST_TICKS, integer=whole).tick_values(first, last)
+        return [tick for tick in ticks if first <= tick <= last]
+
+    def _name_specials(self, axes: Axes) -> None:
+        """Ticks for the numbers, then one with the word of each special value."""
         words = {self.at(special): special.word for special in self._specials}
         write = plain if self._log else linear_label
-        axes.xaxis.set_major_locator(FixedLocator([*ticks, *words]))
+        axes.xaxis.set_major_locator(FixedLocator([*self._ticks(), *words]))
         axes.xaxis.set_major_formatter(lambda value, _: words.get(value) or write(value))
 
 
 def _uneven(numbers: list) -> bool:
-    """Few values, most of them crowded: 0, 0.9, 0.99, 0.999. Each gets the same room."""
+    """Few values, most of them crowded at the end: 0.8, 0.9, 0.99, 0.998. Each gets the same room."""
     if len(numbers) < 3 or len(numbers) > 8:
         return False
     steps = numpy.diff(numbers)
-    return steps.max() > 8 * numpy.median(steps)
+    return steps.max() > 4 * numpy.median(steps)
 
 
 def _name_places(axes: Axes, places: list) -> None:

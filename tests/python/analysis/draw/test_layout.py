@@ -4,7 +4,18 @@ import itertools
 
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from oitlab_analysis.draw.layout import darker, log_axis, panel_grid, panel_titles, place_labels, plain, robust_limit
+from matplotlib.lines import Line2D
+from oitlab_analysis.draw.layout import (
+    darker,
+    legend_height,
+    log_axis,
+    panel_grid,
+    panel_titles,
+    place_labels,
+    plain,
+    robust_limit,
+    wrap_label,
+)
 from oitlab_analysis.draw.style import COLOURS, TALLEST, method_looks, series_look
 
 LONG = "the cathedral of a town with a rather long name, seen from the hill in the fog of a November at "
@@ -90,3 +101,33 @@ def test_numbers_on_axes():
 
 def test_text_in_a_light_colour_is_darkened():
     assert darker("#0072B2") == "#0072b2" and darker("#F0E442") != "#f0e442"
+
+
+def test_a_label_breaks_between_parameters_and_no_line_ends_in_a_comma():
+    assert wrap_label("depth_filter=1, repair=false", 20) == "depth_filter=1\nrepair=false"
+    assert wrap_label("a=1, b=2", 20) == "a=1, b=2"
+    assert wrap_label("lucid (depth_filter=5, repair=on)", 20) == "lucid\n(depth_filter=5\nrepair=on)"
+
+
+def test_a_label_keeps_clear_of_points_without_one_and_of_intervals():
+    def places(*others, lines=()):
+        figure, (axes,) = panel_grid([""], 1, 2.0)
+        axes.set_xlim(0, 10)
+        axes.set_ylim(0, 10)
+        place_labels(axes, [(5, 5, "label", "#000000"), *others], lines=lines)
+        text, = axes.texts
+        return text.get_horizontalalignment(), text.get_verticalalignment()
+    assert places() == ("left", "center")
+    assert places((5.3, 5, "", "#000000")) != ("left", "center")
+    assert places(lines=[(5, 5, 6, 5)]) != ("left", "center")
+
+
+def test_long_entries_of_a_legend_wrap_and_fit_below_its_height():
+    handles = [Line2D([], [], label=f"depth_peeling (layers={n}, mode=front_to_back, back=list, atomics=auto)")
+               for n in range(9)] + [Line2D([], [], label=f"m{n}") for n in range(10)]
+    figure, _ = panel_grid(["x"], 1, 2.0, handles)
+    FigureCanvasAgg(figure).draw()
+    legend, = figure.legends
+    height = legend.get_window_extent().height / figure.dpi
+    assert legend._ncols == 2 and "\n" in legend.get_texts()[0].get_text()
+    assert height <= legend_height([handle.get_label() for handle in handles], 7.0) < 1.2 * height + 0.08
