@@ -53,6 +53,8 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
                         help="error of the quality-against-speed charts (default rmse)")
     report.add_argument("--all-charts", action="store_true",
                         help="draw every chart, however many there are")
+    report.add_argument("--warnings", action="store_true",
+                        help="print every warning in full, instead of their count and the first one")
     own = report.add_argument_group(
         "a chart of your own",
         "Lines over any parameter, for what else differs: the second chart of each section, and\n"
@@ -139,7 +141,8 @@ def run_report(options: argparse.Namespace) -> tuple[str, int]:
         curves = (Curve(options.x, options.y, options.per, options.only, options.base),)
     elif options.per or options.base or options.only:
         raise BadResults("--per, --base and --only are of a chart that --x asks for")
-    result = make_report(options.results, options.out, options.metric, options.all_charts, curves)
+    result = make_report(options.results, options.out, options.metric, options.all_charts, curves,
+                         options.warnings)
     return "\n".join([result.text, *map(str, result.files)]), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 

@@ -5,6 +5,7 @@ A layout engine would take a second for each chart, and would not keep room for 
 
 from __future__ import annotations
 
+import itertools
 import math
 import textwrap
 from collections.abc import Sequence
@@ -93,7 +94,7 @@ def legend_height(labels: Sequence[str], width: float) -> float:
     columns = legend_columns(legend_labels(labels), width)
     rows, longer = divmod(len(lines), columns)  # the first columns have one entry more
     starts = [column * rows + min(column, longer) for column in range(columns + 1)]
-    return max(sum(lines[first:last]) for first, last in zip(starts, starts[1:])) * LEGEND_LINE + 0.08
+    return max(sum(lines[first:last]) for first, last in itertools.pairwise(starts)) * LEGEND_LINE + 0.08
 
 
 def add_legend(figure: Figure, handles: Sequence, size: float = 7) -> None:

@@ -163,7 +163,8 @@ def draw_overall(section: Section, page: int, name: str) -> Figure | None:
 
 
 def _draw_points(axes: Axes, cells: pandas.DataFrame, times: numpy.ndarray, ends: list[numpy.ndarray],
-                 looks: dict, names: dict[str, str], floor: float, metric: Metric, all_errors: pandas.Series, briefly: bool) -> None:
+                 looks: dict, names: dict[str, str], floor: float, metric: Metric, all_errors: pandas.Series,
+                 briefly: bool) -> None:
     """Points with intervals, hints for the pointer, the front, and labels where they find room."""
     errors = numpy.maximum(cells["error"].to_numpy(dtype=float), floor)
     labels = cells["label"].tolist()

@@ -20,6 +20,8 @@ from .markdown import markdown_report
 from .page import html_page
 from .table import TERMINAL_WIDTH, terminal_table, terminal_warnings
 
+ALL_WARNINGS = "(all: --warnings)"
+NOT_WRITTEN = "Nothing was written: --out DIR says where the page, the charts and the CSV go."
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -33,12 +35,12 @@ class Result:
 
 
 def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse",
-                all_charts: bool = False, curves: tuple[Curve, ...] = ()) -> Result:
+                all_charts: bool = False, curves: tuple[Curve, ...] = (), all_warnings: bool = False) -> Result:
     """Reads all cells of the paths (see collect()) and writes the report into `out`.
 
     Without `out` it is written into the results folder, where the paths name exactly one, and
     nowhere otherwise: packs and folders of packs are somebody's data. `curves` are drawn besides the
-    usual charts. Raises BadResults, OSError.
+    usual charts. The text folds warnings into one line, unless `all_warnings`. Raises BadResults, OSError.
     """
     collection = collect(*paths)
     table = add_comparisons(as_table(collection.cells), collection.cells)
@@ -57,14 +59,12 @@ def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse"
             more = f"{missing} more charts: {command} --all-charts"
     report = Report(folder or Path(), collection.sources, sections, charts, table,
                     clock_summary(list(collection.cells.values())), notes, command, more)
-    text, files = terminal_text(report), []
+    files = []
     if folder:
         files = [folder / "plots" / f"{chart.name}.png" for own in charts for chart in own
                  if chart.name.startswith("curve-")]
         files += write_files(report)
-    else:
-        text += "\nNothing was written: --out DIR says where the page, the charts and the CSV go.\n"
-    return Result(text, files, bool((table["status"] == "failed").any()))
+    return Result(terminal_text(report, bool(folder), all_warnings), files, bool((table["status"] == "failed").any()))
 
 
 def write_files(report: Report) -> list[Path]:
@@ -96,11 +96,20 @@ def own_folder(paths: list[Path]) -> Path | None:
     return None if tracked.stdout else paths[0]
 
 
-def terminal_text(report: Report) -> str:
-    blocks = [terminal_table(section) for section in report.sections]
-    blocks.append(terminal_warnings(report.notes) + f"{summary(report.table)}.")
+def terminal_text(report: Report, written: bool, all_warnings: bool = False) -> str:
+    """For each section its title, the path of its first chart, the table, and its warnings."""
+    blocks = []
+    for section, charts in zip(report.sections, report.charts):
+        lines = textwrap.wrap(section.title, TERMINAL_WIDTH)
+        if charts:
+            lines.append(str(report.folder / "plots" / f"{charts[0].name}.png"))
+        warnings = section.warnings + (report.notes if len(report.sections) == 1 else [])
+        said = terminal_warnings(warnings, all_warnings, ALL_WARNINGS)
+        blocks.append("\n".join([*lines, terminal_table(section), *(["", said] if said else [""])]))
+    notes = report.notes if len(report.sections) > 1 else []
+    blocks.append(terminal_warnings(notes, all_warnings, ALL_WARNINGS) + f"{summary(report.table)}.\n")
     if report.more:
-        blocks[-1] += f"\n{report.more}"
+        blocks[-1] += f"{report.more}\n"
     if report.clock:
-        blocks[-1] += "\n" + textwrap.fill(report.clock, TERMINAL_WIDTH)
-    return "\n\n".join(blocks) + "\n"
+        blocks[-1] += textwrap.fill(report.clock, TERMINAL_WIDTH) + "\n"
+    return "\n".join(blocks) + ("" if written else f"\n{NOT_WRITTEN}\n")

@@ -64,9 +64,8 @@ TERMINAL_COLUMNS = (
 
 
 def terminal_table(section: Section) -> str:
-    """Aligned text, one block of lines per setting, at most 100 columns wide."""
-    lines = textwrap.wrap(section.title, TERMINAL_WIDTH)
-    lines += terminal_warnings(section.warnings).splitlines()
+    """Aligned text, one block of lines per setting, at most 100 columns wide. Begins with an empty line."""
+    lines: list[str] = []
     head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
     for _, cells in section.settings():
         lines += ["", *textwrap.wrap(setting_heading(cells), TERMINAL_WIDTH), head.rstrip()]
@@ -75,14 +74,20 @@ def terminal_table(section: Section) -> str:
     return "\n".join(lines)
 
 
-def terminal_warnings(warnings: list[str]) -> str:
-    """Warnings as lines of at most 100 characters, or nothing."""
-    lines = [
-        textwrap.fill(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ",
-                      break_on_hyphens=False)
-        for warning in warnings
-    ]
-    return "".join(f"{line}\n" for line in lines)
+def terminal_warnings(warnings: list[str], everything: bool = True, hint: str = "") -> str:
+    """Warnings as lines of at most 100 characters, or nothing. Unless `everything` is wanted they are one
+    line: how many there are, what the first says, as far as it goes, and the hint how to see all."""
+    if not warnings:
+        return ""
+    if everything:
+        lines = [textwrap.fill(f"warning: {warning}", TERMINAL_WIDTH, subsequent_indent="  ",
+                               break_on_hyphens=False) for warning in warnings]
+        return "".join(f"{line}\n" for line in lines)
+    line = f"{len(warnings)} warnings: {warnings[0]}" if len(warnings) > 1 else f"1 warning: {warnings[0]}"
+    if len(warnings) == 1 and len(line) <= TERMINAL_WIDTH:
+        return f"{line}\n"
+    return textwrap.shorten(line, TERMINAL_WIDTH - len(hint) - 1, placeholder=" ...", break_on_hyphens=False) \
+        + f" {hint}\n"
 
 
 def setting_heading(cells: pandas.DataFrame) -> str:

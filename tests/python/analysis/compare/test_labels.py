@@ -44,7 +44,7 @@ def test_what_all_rows_of_a_chart_share_is_not_named(tmp_path):
 
 
 def test_a_variant_without_a_parameter_keeps_its_name(tmp_path):
-    names, said = names_of(tmp_path, {"n": 1}, {}, {"n": 1, "m": 1})
+    names, _said = names_of(tmp_path, {"n": 1}, {}, {"n": 1, "m": 1})
     assert len(names) == 3, "no two variants have one name"
 
 

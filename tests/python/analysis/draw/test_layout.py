@@ -111,7 +111,7 @@ def test_a_label_breaks_between_parameters_and_no_line_ends_in_a_comma():
 
 def test_a_label_keeps_clear_of_points_without_one_and_of_intervals():
     def places(*others, lines=()):
-        figure, (axes,) = panel_grid([""], 1, 2.0)
+        _figure, (axes,) = panel_grid([""], 1, 2.0)
         axes.set_xlim(0, 10)
         axes.set_ylim(0, 10)
         place_labels(axes, [(5, 5, "label", "#000000"), *others], lines=lines)
