@@ -5,10 +5,32 @@
 
 namespace oitlab::testing {
 
-const Device& sharedDevice() {
-  static const Device device(Device::Options{.validation = true});
-  return device;
+namespace {
+
+/// Destroys the device after the last test. As a static object it would be destroyed at exit, after
+/// static objects of the validation layer, which it still needs: layers of 1.4 crash there.
+class DeviceEnvironment : public ::testing::Environment {
+ public:
+  const Device& device() {
+    if (!device_) device_.emplace(Device::Options{.validation = true});
+    return *device_;
+  }
+  void TearDown() override { device_.reset(); }
+
+ private:
+  std::optional<Device> device_;
+};
+
+DeviceEnvironment& environment() {
+  static auto* const environment = new DeviceEnvironment;  // GoogleTest's, which deletes it
+  return *environment;
 }
+
+const auto* const registered = ::testing::AddGlobalTestEnvironment(&environment());
+
+}  // namespace
+
+const Device& sharedDevice() { return environment().device(); }
 
 void GpuTest::SetUp() {
   try {
