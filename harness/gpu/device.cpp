@@ -229,6 +229,9 @@ void Device::wait(vk::Fence fence, double seconds) const {
         device_.waitForFences(fence, VK_TRUE, static_cast<std::uint64_t>(seconds * 1e9));
     if (result == vk::Result::eTimeout)
       fail<DeviceError>("{} did not finish a frame within {} s", info_.name, seconds);
+    // Layers of 1.4 read what shaders printed in a thread of their own, and a fence does not wait
+    // for that. The text is lost when the command buffer is used again or destroyed before.
+    if (validation_) queue_.waitIdle();
   } catch (const vk::SystemError& error) {
     fail<DeviceError>("{} failed while working: {}", info_.name, error.what());
   }
