@@ -34,7 +34,12 @@ def seconds(text):
 
 def run_on_a_terminal(program, arguments, env):
     """What it says on a terminal, as (seconds since the start, text); and how long it took."""
-    terminal, side = pty.openpty()
+    try:
+        terminal, side = pty.openpty()
+    except OSError as error:
+        # A chroot may be without /dev/pts. CI has it, so that this cannot look like a pass there.
+        assert "CI" not in os.environ, error
+        pytest.skip(f"no pseudo-terminal to be had (is /dev/pts mounted?): {error}")
     started = time.monotonic()
     run = subprocess.Popen([program, *map(str, arguments)], stderr=side, stdout=subprocess.DEVNULL,
                            env=env)
