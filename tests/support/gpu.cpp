@@ -30,7 +30,9 @@ const auto* const registered = ::testing::AddGlobalTestEnvironment(&environment(
 
 }  // namespace
 
-const Device& sharedDevice() { return environment().device(); }
+const Device& sharedDevice() {
+  return environment().device();
+}
 
 void GpuTest::SetUp() {
   try {
