@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 # As in `metrics`, which would load pandas: --help should not wait for it.
 METRICS = ("rmse", "psnr", "ssim", "flip", "pixels_off", "wrong_order")
@@ -17,8 +18,15 @@ EXIT_CELLS_FAILED = 1
 EXIT_BAD_INPUT = 2
 
 
+class Parser(argparse.ArgumentParser):
+    """One line for wrong input, as of the program itself."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {message}; see `{self.prog} --help`\n")
+
+
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oitlab", description="Analyses results folders that `oitlab run` wrote."
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -110,7 +118,10 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     histogram.add_argument("depth", metavar="FILE.json", type=Path,
                            help="what `oitlab depth --json` prints")
     histogram.add_argument("chart", metavar="OUT.png", type=Path, help="the chart to write")
-    return parser.parse_args(arguments)
+    options, unknown = parser.parse_known_args(arguments)
+    if unknown:  # the parser of the verb knows what it takes
+        commands.choices[options.command].error(f"'{unknown[0]}' is not known here")
+    return options
 
 
 def run_histogram(source: Path, target: Path) -> int:
@@ -143,7 +154,7 @@ def run_report(options: argparse.Namespace) -> tuple[str, int]:
         raise BadResults("--per, --base and --only are of a chart that --x asks for")
     result = make_report(options.results, options.out, options.metric, options.all_charts, curves,
                          options.warnings)
-    return "\n".join([result.text, *map(str, result.files)]), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
+    return "\n".join(filter(None, [result.text, *map(str, result.files)])), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 
 def run_diff(options: argparse.Namespace) -> tuple[str, int]:
@@ -152,6 +163,7 @@ def run_diff(options: argparse.Namespace) -> tuple[str, int]:
 
     result = diff(options.a, options.b)
     if options.out:
+        options.out.parent.mkdir(parents=True, exist_ok=True)
         options.out.write_text(markdown(result, (options.a, options.b)), encoding="utf-8")
     return terminal(result, options.details), EXIT_DONE
 
@@ -167,11 +179,13 @@ def run_paper(options: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_pack(options: argparse.Namespace) -> tuple[str, int]:
+    from .formats import counted
     from .read.packs import PACK_SUFFIX, write_pack
     from .read.sources import BadResults
 
     if not (options.results / "cells").is_dir():
-        raise BadResults(f"{options.results}: not a results folder (it has no folder cells)")
+        raise BadResults(f"{options.results}: " + ("not a results folder (it has no folder cells)"
+                                                   if options.results.exists() else "no such folder"))
     if not options.pack.name.endswith(PACK_SUFFIX):
         raise BadResults(f"{options.pack}: wanted a name that ends with {PACK_SUFFIX}")
     count, left_out = write_pack(options.results, options.pack)
@@ -179,7 +193,7 @@ def run_pack(options: argparse.Namespace) -> tuple[str, int]:
     if count == 0:
         raise BadResults("; ".join([f"{options.results}: no whole cell to pack", *lines[:3]]))
     size = options.pack.stat().st_size
-    return "\n".join([*lines, f"{options.pack}: {count} cells, {size / 1024:.0f} KiB"]), EXIT_DONE
+    return "\n".join([*lines, f"{options.pack}: {counted(count, 'cell')}, {size / 1024:.0f} KiB"]), EXIT_DONE
 
 
 RUN = {"report": run_report, "diff": run_diff, "paper": run_paper, "pack": run_pack}
@@ -201,6 +215,9 @@ def main(arguments: list[str] | None = None) -> int:
         return missing_module(name, error)
     except BadResults as error:
         print(f"{name}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except (FileExistsError, NotADirectoryError) as error:
+        print(f"{name}: {error.filename}: a file is there, where a folder is wanted", file=sys.stderr)
         return EXIT_BAD_INPUT
     except OSError as error:
         print(f"{name}: {error.filename}: {error.strerror}", file=sys.stderr)

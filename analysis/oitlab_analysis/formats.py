@@ -88,6 +88,11 @@ def decibels(psnr: float | None, rmse: float | None) -> str:
     return "∞ (equal)" if not is_number(psnr) and rmse == 0 else number(psnr)
 
 
+def counted(number: int, noun: str) -> str:
+    """`1 cell`, `2 cells`."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def parameter(value: object) -> str:
     """A parameter's value as one would type it."""
     if isinstance(value, bool):

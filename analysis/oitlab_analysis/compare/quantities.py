@@ -70,6 +70,7 @@ NAMED: dict[str, Quantity] = {
                                   metric=Metric("pixels in the wrong order before repair, %",
                                                 lambda table: 100 * wrong_order_found(table))),
 } | {name: _of_metric(name, metric) for name, metric in METRICS.items()}
+EXAMPLES = ("time", "ratio", "memory", "rmse")
 # Prefixes of columns that a user may leave out, and the word after a stage.
 SHORT = (("param.", ""), ("stage.", "_ms"), ("counter.", ""), ("memory.", ""), ("", ""))
 
@@ -84,7 +85,9 @@ def find_quantity(name: str, table: pandas.DataFrame) -> Quantity:
             return NAMED[name]
     known = list(dict.fromkeys(names_in(table)))
     close = difflib.get_close_matches(name, known, 3)
-    hint = f"did you mean {' or '.join(close)}?" if close else f"these vary: {', '.join(varying(table)[:12])}"
+    varied = ", ".join(varying(table)[:12]) or "nothing"
+    hint = f"did you mean {' or '.join(close)}?" if close else \
+        f"there are {', '.join(EXAMPLES)}, and columns of cells.csv; of the parameters vary: {varied}"
     raise BadResults(f"no cell has a quantity {name!r}; {hint}")
 
 

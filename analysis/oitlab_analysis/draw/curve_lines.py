@@ -10,7 +10,7 @@ from .. import formats
 from ..compare.labels import is_given, records
 from ..compare.quantities import find_quantity, in_order, varying
 from ..compare.sections import SETTING, Section
-from ..compare.special_values import meaning
+from ..compare.special_values import Special, meaning
 from ..read.sources import BadResults
 from .style import DASHES
 
@@ -100,14 +100,31 @@ def lines_of(section: Section, curve: Curve) -> list[Line]:
 def check(sections: list[Section], curve: Curve) -> None:
     """Raises BadResults that says what is wrong with what the user asked for, where no section has it."""
     tables = [section.table for section in sections]
+    methods = {method for table in tables for method in table["method"]}
+    if curve.method and curve.method not in methods:
+        raise BadResults(f"no cell is of the method {curve.method!r}; there are: {', '.join(sorted(methods))}")
     names = [curve.x, curve.y] + ([curve.per] if curve.per and curve.per not in PER_COLUMN else [])
     for name in names:
         find_quantity(name, pandas.concat(tables))
-    if any(lines_of(section, curve) for section in sections):
+    lines = [line for section in sections for line in lines_of(section, curve)]
+    if lines:
+        if curve.base is not None and all(place_of(line.x, curve.base) is None for line in lines):
+            there = in_order([value for line in lines for value in line.x])
+            raise BadResults(f"no line has {curve.x} = {curve.base}; there are: "
+                             f"{', '.join(formats.parameter(value) for value in there)}")
         return
     varied = list(dict.fromkeys(name for table in tables for name in varying(table)))
     raise BadResults(f"no two cells differ in {curve.x} alone and have {curve.y}; "
                      f"these vary: {', '.join(varied) or 'none'}")
+
+
+def place_of(values: list, base: float | str) -> int | None:
+    """Where the base is among the values of x: numbers, texts, or special ones, by number or word."""
+    for index, value in enumerate(values):
+        number = value.value if isinstance(value, Special) else value
+        if number == base or str(base) in (formats.parameter(number), str(value)):
+            return index
+    return None
 
 
 def _sorted(cells: pandas.DataFrame) -> pandas.DataFrame:

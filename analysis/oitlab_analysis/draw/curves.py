@@ -16,7 +16,7 @@ from ..compare.quantities import Quantity, find_quantity
 from ..compare.sections import Section
 from ..compare.special_values import Special
 from ..compare.statistics import Comparison, compare_cells
-from .curve_lines import MOST_DASHES, Curve, Line, panels_of
+from .curve_lines import MOST_DASHES, Curve, Line, panels_of, place_of
 from .layout import LEFT, linear_label, log_axis, mark_beyond, panel_grid, robust_limit
 from .quality_speed import error_floor, set_error_axis
 from .style import DASHES, series_look
@@ -59,23 +59,14 @@ def draw_curves(section: Section, curves: tuple[Curve, ...], page: int = 0) -> F
 
 def _has_base(panel: tuple[Curve, str, list[Line]]) -> bool:
     curve, _, lines = panel
-    return curve.base is None or any(_place_of(line.x, curve.base) is not None for line in lines)
-
-
-def _place_of(values: list, base: float | str) -> int | None:
-    """Where the base is among the values of x: numbers, texts, or special ones, by number or word."""
-    for index, value in enumerate(values):
-        number = value.value if isinstance(value, Special) else value
-        if number == base or str(base) in (formats.parameter(number), str(value)):
-            return index
-    return None
+    return curve.base is None or any(place_of(line.x, curve.base) is not None for line in lines)
 
 
 def _y_label(section: Section, curve: Curve, lines: list[Line]) -> str:
     label = find_quantity(curve.y, section.table).label
     if curve.base is None:
         return label
-    places = ((line, _place_of(line.x, curve.base)) for line in lines)
+    places = ((line, place_of(line.x, curve.base)) for line in lines)
     base = next((line.x[place] for line, place in places if place is not None), curve.base)
     base = f"“{base}”" if isinstance(base, Special) else formats.parameter(base)
     return f"speed-up against {base}" if curve.speedup else f"{label.split(',')[0]}, % of that at {base}"
@@ -116,7 +107,7 @@ def _points(section: Section, curve: Curve, y: Quantity, line: Line, at: list):
         return [(x, value, *((low, high) if formats.is_number(low) and formats.is_number(high)
                              else (None, None)))
                 for x, value, low, high in zip(at, values, *ends)]
-    place = _place_of(line.x, curve.base)
+    place = place_of(line.x, curve.base)
     if place is None:
         return []
     if curve.y == "time":

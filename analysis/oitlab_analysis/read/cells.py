@@ -101,7 +101,8 @@ def _nothing_in(sources: list[Path], problems: list[Problem]) -> str:
     if not problems:
         return f"{where} is empty"
     first = problems[0]
-    return f"{where} has no whole cell in {len(problems)} file(s); {first.file}: {first.reason}"
+    files = "" if len(problems) == 1 else f" in {len(problems)} files"
+    return f"{where} has no whole cell{files}; {first.file}: {first.reason}"
 
 
 def read_cell(path: Path) -> dict:

@@ -43,6 +43,8 @@ def documents(source: Path) -> Iterator[tuple[str, bytes | dict | NotACell]]:
     if source.is_file() or not source.is_dir():  # a device or a pipe is read by nobody
         if not source.is_file():
             raise BadResults(f"{source}: neither a file nor a folder")
+        if not source.name.endswith((".json", PACK_SUFFIX)):
+            raise BadResults(f"{source}: neither a results folder nor a pack (*{PACK_SUFFIX}); {HINT}")
         yield from _packed(source)
         return
     if not (source / "cells").is_dir():

@@ -11,6 +11,7 @@ import pandas
 from ..compare.labels import parameter_text, parameters_of, records
 from ..compare.sections import Section
 from ..draw.style import Chart
+from ..formats import counted
 from .table import describe
 
 MOST_COMMANDS = 20  # beyond these a count says enough
@@ -50,7 +51,7 @@ def summary(table: pandas.DataFrame) -> str:
     counts = table["status"].value_counts()
     parts = [f"{counts.get(status, 0)} {word}" for status, word in
              (("ok", "measured"), ("failed", "failed"), ("skipped", "skipped"))]
-    return f"{len(table)} cells: {', '.join(parts)}"
+    return f"{counted(len(table), 'cell')}: {', '.join(parts)}"
 
 
 def all_parameters(section: Section) -> dict[str, str]:

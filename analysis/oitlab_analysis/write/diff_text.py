@@ -16,8 +16,9 @@ def summary(changes: list[Change]) -> str:
     counts = Counter(change.verdict for change in changes)
     parts = [f"{counts.get(word, 0)} {word}" for word in ("faster", "slower", "same", "ambiguous")]
     images = sum(change.image_changed for change in changes)
-    return (f"{len(changes)} cells in both: {', '.join(parts)}; "
-            + (f"{images} images differ." if images else "all images are the same."))
+    return (f"{formats.counted(len(changes), 'cell')} in both: {', '.join(parts)}; "
+            + ("all images are the same." if not images else "1 image differs." if images == 1
+               else f"{images} images differ."))
 
 
 def _row(change: Change) -> list[str]:
@@ -57,7 +58,7 @@ def terminal(result: Diff, details: bool = False) -> str:
                 lines += textwrap.wrap(text, TERMINAL_WIDTH, initial_indent="      ",
                                        subsequent_indent="        ", break_on_hyphens=False)
         lines.append("")
-    return "\n".join(lines) + terminal_warnings(result.warnings) + summary(result.changes) + "\n"
+    return "\n".join(lines) + terminal_warnings(result.warnings) + summary(result.changes)
 
 
 def markdown(result: Diff, folders: tuple[Path, Path]) -> str:

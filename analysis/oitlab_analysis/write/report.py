@@ -49,7 +49,8 @@ def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse"
         check(sections, curve)
     notes = mixture_warnings(table) + left_out(collection.problems)
     if collection.repeated:
-        notes.append(f"{collection.repeated} cells were given twice, and count once.")
+        notes.append("1 cell was given twice, and counts once." if collection.repeated == 1 else
+                     f"{collection.repeated} cells were given twice, and count once.")
     folder, command = out or own_folder(paths), command_of(paths, out)
     charts, more = [[] for _ in sections], ""
     if folder:

@@ -8,6 +8,7 @@ or, with the methods and parameters of the sweeps, a number of cells: ... FOLDER
 from __future__ import annotations
 
 import json
+import os
 import sys
 import zlib
 from pathlib import Path
@@ -124,11 +125,16 @@ def write_cell(folder: Path, cell: dict, image: bool = True) -> None:
         write_image(folder / cell["image"]["file"], *cell["size"], cell["image_hash"])
 
 
+def tint_of(seed: str) -> int:
+    """What tells images of one size apart."""
+    return zlib.crc32(seed.encode()) % 200
+
+
 def write_image(path: Path, width: int, height: int, seed: str = "", detail: int = 0) -> None:
     """A gradient; `detail` adds noise, so that the file takes as many bytes as a rendering."""
     path.parent.mkdir(parents=True, exist_ok=True)
     y, x = numpy.mgrid[0:height, 0:width]
-    tint = zlib.crc32(seed.encode()) % 200
+    tint = tint_of(seed)
     pixels = numpy.stack([x * 255 // width, y * 255 // height, numpy.full_like(x, tint)], axis=2)
     if detail:
         noise = numpy.random.default_rng(tint).integers(0, detail, (height, width, 3))
@@ -213,10 +219,14 @@ def sweep_cells(count: int, **changes):
 def make_sweep(folder: Path, count: int = 2000, image_size: tuple[int, int] | None = None,
                **changes) -> Path:
     """A results folder of `count` cells; images of another size than the cells say, if wanted."""
+    made: dict[tuple, Path] = {}
     for cell in sweep_cells(count, **changes):
         write_cell(folder, cell, image=False)
-        write_image(folder / cell["image"]["file"], *(image_size or cell["size"]), cell["image_hash"],
-                    detail=8)
+        path, size = folder / cell["image"]["file"], image_size or tuple(cell["size"])
+        if (like := made.setdefault((size, tint_of(cell["image_hash"])), path)) != path:
+            os.link(like, path)  # the same pixels: drawing 2,000 of them takes minutes
+        else:
+            write_image(path, *size, cell["image_hash"], detail=8)
     return folder
 
 

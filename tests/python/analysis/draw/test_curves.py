@@ -103,14 +103,17 @@ def test_stages_counters_and_columns_have_names(peeling):
 
 @pytest.mark.parametrize("curve, said", [
     (Curve("layer", "rmse"), "'layer'; did you mean layers"),
-    (Curve("layers", "qqqqq"), "'qqqqq'; these vary: layers, mode"),
+    (Curve("layers", "qqqqq"), "'qqqqq'; there are time, ratio, memory, rmse, and columns of cells.csv; "
+     "of the parameters vary: layers, mode"),
+    (Curve("layers", "time", method="lucid"), "no cell is of the method 'lucid'; there are: blend, depth_peeling"),
+    (Curve("layers", "time", base="3"), "no line has layers = 3; there are: 1, 2, 8"),
     (Curve("opacity", "time"), "no two cells differ in opacity alone and have time; these vary: layers, mode"),
     (Curve("layers", "time", "qqqqq"), "'qqqqq'")])
 def test_what_cannot_be_drawn_is_told_with_what_can(peeling, curve, said):
     with pytest.raises(BadResults) as caught:
         check([peeling], curve)
     assert said in str(caught.value) and "\n" not in str(caught.value)
-    assert curves.pages((curve,))(peeling) == 0 or curve.per
+    assert curves.pages((curve,))(peeling) == 0 or curve.per or curve.base
 
 
 def test_many_variants_of_many_scenes_get_a_panel_for_each_scene(tmp_path):

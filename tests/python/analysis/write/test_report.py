@@ -129,7 +129,7 @@ def test_two_versions_of_a_cell_in_two_folders_are_both_shown(tmp_path):
     text = make_report([tmp_path / "abc1234", tmp_path / "def5678"]).text
     assert "2 cells: 2 measured" in text and "2 commits" in text
     again = make_report([tmp_path / "abc1234", tmp_path / "abc1234"]).text
-    assert "1 cells were given twice" in again and "1 cells: 1 measured" in again
+    assert "1 cell was given twice" in again and "1 cell: 1 measured" in again
 
 
 def test_nothing_is_written_into_a_folder_that_git_tracks(tmp_path):
