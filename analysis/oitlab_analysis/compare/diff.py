@@ -18,6 +18,7 @@ from .. import formats
 from ..read.cells import Collection, collect, left_out
 from ..read.sources import BadResults
 from .device_notes import NOTED, note_of
+from .fragment_source import HARDWARE, SETTING, source_of
 from .labels import parameter_text
 from .statistics import FEWEST_BLOCKS, SEED, block_medians_of, interval_of, resampled_medians, verdict
 from .tidy import block_count
@@ -70,6 +71,7 @@ class Change:
     interval: tuple[float, float] | None
     blocks: int  # of A or of B, whichever has fewer
     against_blend: tuple[float, tuple[float, float] | None] | None
+    blend_source: str  # of the fragments of that blend; "" without one
     shaders: Shaders
     image_changed: bool
     error: tuple[float | None, float | None]  # RMSE before and after
@@ -95,7 +97,7 @@ def key_of(cell: dict) -> str:
     """What makes two cells the same measurement, whatever the version of the program."""
     scene = cell["scene"]
     return json.dumps([scene["name"], scene.get("detail"), scene.get("opacity"), cell["view"],
-                       cell["size"], cell["format"], cell["method"], cell["parameters"],
+                       cell["size"], cell["format"], cell["method"], cell["parameters"] | {SETTING: source_of(cell)},
                        cell["device"]["name"]], sort_keys=True)
 
 
@@ -159,12 +161,12 @@ def blends_of(cells: dict[str, dict]) -> Blends:
 
 
 def _blends(before: dict, after: dict, blends: tuple[Blends, Blends]) -> tuple[dict, dict] | None:
-    """The same blend cell of A and of B, each measured in turn with its cell; submission order if
-    there are several."""
+    """The same blend cell of A and of B, each measured in turn with its cell; from the hardware and in
+    submission order if there are several."""
     found = [own.get(cell["group"], {}) for cell, own in zip((before, after), blends)]
-    common = sorted((c["parameters"].get("order") != "submission", key)
+    common = sorted((source_of(c) != HARDWARE, c["parameters"].get("order") != "submission", key)
                     for key, c in found[0].items() if key in found[1])
-    return (found[0][common[0][1]], found[1][common[0][1]]) if common else None
+    return (found[0][common[0][-1]], found[1][common[0][-1]]) if common else None
 
 
 def _over_blend(cell: dict, blend: dict) -> list[float]:
@@ -186,7 +188,7 @@ def compare_pair(before: dict, after: dict, all_blends: tuple[Blends, Blends], l
             relative = _ratio(*ratios)
     errors = tuple((c.get("quality") or {}).get("rmse") for c in (before, after))
     return Change(after, label, ratio, interval, min(map(block_count, (before, after))), relative,
-                  Shaders.of(before, after), before.get("image_hash") != after.get("image_hash"), errors)
+                  source_of(blends[1]) if blends and relative else "", Shaders.of(before, after), before.get("image_hash") != after.get("image_hash"), errors)
 
 
 def diff(folder_a: Path, folder_b: Path) -> Diff:
@@ -240,5 +242,5 @@ def _measurement_warnings(changes: list[Change], a: dict, b: dict) -> list[str]:
             warnings.append(f"Another {what}: {', '.join(values[0])} in A, {', '.join(values[1])} in B.")
     if any(c.cell["device"]["type"] == "cpu" for c in changes):
         warnings.append("CPU device: these times say nothing about GPUs.")
-    notes = {note_of(c.cell["device"]["name"], "blend") for c in changes} - {""}
+    notes = {note_of(c.cell["device"]["name"], "blend", c.blend_source) for c in changes} - {""}
     return warnings + [f"{NOTED.strip()} {note}" for note in sorted(notes)]

@@ -13,8 +13,9 @@ import pandas
 from ..formats import NOTHING
 from .clock import frame_note, stage_note
 from .device_notes import note_of
+from .fragment_source import COMPUTE, HARDWARE, named, source_of
 from .labels import add_labels
-from .statistics import OTHER_RUN, compare_setting, disagreements
+from .statistics import OTHER_RUN, Comparison, compare_setting, disagreements, headline_source
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")
 SETTING = ("scene", "opacity", "detail", "content_hash", "view", "width", "height", "format")
@@ -47,20 +48,30 @@ class Section:
 
 
 def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.DataFrame:
-    """Adds `baseline`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks`, `verdict` and
+    """Adds `baseline`, `baseline_name`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks`, `verdict` and
     `device_note`: what a reader must know of a ratio to this baseline on this device, or "".
 
     Compares only cells that share their whole context and setting, and of these only cells of one
-    run. `baseline` is the id of the cell that the ratio is to, missing where there is no ratio.
+    run. `baseline` is the id of the cell that the ratio is to, missing where there is no ratio;
+    `baseline_name` is its method and source. Where the headline source is compute (statistics), the ratio
+    to hardware blending stands beside it, in `ratio_hardware`, `ratio_hardware.low` and `.high`.
     """
-    compared = {}
+    compared, beside = {}, {}
     measured = table[table["status"] == "ok"]
-    for _, setting in measured.groupby([*CONTEXT, *SETTING], dropna=False):
-        compared |= compare_setting({key: cells[key] for key in setting["key"]})
+    for _, context in measured.groupby(list(CONTEXT), dropna=False):
+        settings = [{key: cells[key] for key in setting["key"]}
+                    for _, setting in context.groupby(list(SETTING), dropna=False)]
+        source = headline_source(settings)
+        for setting in settings:
+            compared |= compare_setting(setting, source)
+            if source == COMPUTE:
+                beside |= compare_setting(setting, HARDWARE)
     table = table.copy()
     pairs = [compared.get(key) for key in table["key"]]
     table["baseline"] = [cells[pair[0]]["id"] if pair and pair[1].ratio is not None else None
                          for pair in pairs]
+    table["baseline_name"] = [named(cells[pair[0]]) if pair and pair[1].ratio is not None else None
+                              for pair in pairs]
     for column, field in (
         ("ratio", "ratio"),
         ("ratio.low", "low"),
@@ -70,10 +81,31 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
     ):
         table[column] = [getattr(pair[1], field) if pair else None for pair in pairs]
     table["device_note"] = [
-        note_of(device, cells[pair[0]]["method"]) if pair and pair[1].ratio is not None else ""
+        note_of(device, cells[pair[0]]["method"], source_of(cells[pair[0]]))
+        if pair and pair[1].ratio is not None else ""
         for device, pair in zip(table["device"], pairs)
     ]
-    return table
+    return _add_hardware_ratios(table, cells, beside) if beside else table
+
+
+def _add_hardware_ratios(table: pandas.DataFrame, cells: dict[str, dict],
+                         compared: dict[str, tuple[str, Comparison]]) -> pandas.DataFrame:
+    """Adds the ratios to hardware blending, where that was measured."""
+    found = [compared.get(key) for key in table["key"]]
+    found = [pair[1] if pair and cells[pair[0]]["method"] == "blend" and source_of(cells[pair[0]]) == HARDWARE
+             else None for pair in found]
+    return table.assign(**{f"ratio_hardware{suffix}": [getattr(one, name) if one else None for one in found]
+                           for suffix, name in (("", "ratio"), (".low", "low"), (".high", "high"))})
+
+
+def has_hardware_ratio(table: pandas.DataFrame) -> bool:
+    """Whether ratios to hardware blending stand beside those to the baseline."""
+    return "ratio_hardware" in table and bool(table["ratio_hardware"].notna().any())
+
+
+def baselines_of(table: pandas.DataFrame) -> str:
+    """What the ratios of these cells are to: `blend source=hardware`; "the baseline" where there is none."""
+    return " or ".join(sorted(set(table["baseline_name"].dropna()))) or "the baseline"
 
 
 def make_sections(cells: dict[str, dict], table: pandas.DataFrame) -> list[Section]:
@@ -144,7 +176,10 @@ def _context_warnings(first: pandas.Series) -> list[str]:
 
 
 def _device_notes(group: pandas.DataFrame) -> list[str]:
-    return [f"Ratios marked ‡: {note}" for note in dict.fromkeys(group["device_note"]) if note]
+    notes = list(group["device_note"])
+    if has_hardware_ratio(group):
+        notes += [note_of(device, "blend", HARDWARE) for device in group["device"]]
+    return [f"Ratios marked ‡: {note}" for note in dict.fromkeys(notes) if note]
 
 
 def _other_runs(group: pandas.DataFrame) -> list[str]:

@@ -18,9 +18,14 @@ interval  95% percentile bootstrap of that median, blocks drawn with replacement
           distribution-free interval of a median, from the least to the greatest of n values, covers
           it with 1 - 2^(1-n), which is 0.9375 for n = 5 and 0.969 for n = 6.
 baseline  One cell of a setting (scene, view, size, format), never two. It is a `blend` cell where the
-          setting has one: of the run with most cells of this setting, the newest of equals; in that
-          run the one in submission order, or the fastest. A setting without `blend` takes the
-          fastest cell, by median frame time, of the run with most cells.
+          setting has one, of the headline source where there is one of that: of the run with most
+          cells of this setting, the newest of equals; in that run the one in submission order, or the
+          fastest. A setting without `blend` takes the fastest cell, by median frame time, of the run
+          with most cells.
+headline  The source of the fragments of `blend` as a baseline: "compute" where hardware blending is
+source    the slower one, by the median over the settings of one device, commit and experiment that
+          measured both in submission order, in turn; else "hardware". A GPU whose graphics are a
+          fraction of its compute is known by that.
 run       Cells of one group were measured in turn, by one run of the program. Blocks of two runs are
           no pairs: a cell of another run than its baseline has no ratio.
 verdict   The first of these that holds:
@@ -45,6 +50,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy
+
+from .fragment_source import COMPUTE, HARDWARE, source_of
 
 LEVEL = 0.95
 SAME_WITHIN = 1.01
@@ -161,9 +168,26 @@ def compare_cells(cell: dict, baseline: dict) -> Comparison:
     return compare(block_medians_of(cell), block_medians_of(baseline))
 
 
-def choose_baseline(cells: dict[str, dict]) -> str:
-    """The key of the baseline among the measured cells of one setting, by the rule of this module."""
+def headline_source(settings: Sequence[dict[str, dict]]) -> str:
+    """The source of the baselines of all settings of one context, by the rule of this module. Each setting
+    has its measured cells by key."""
+    ratios = []
+    for cells in settings:
+        pairs: dict[str, dict[str, dict]] = {}
+        for cell in cells.values():
+            if cell["method"] == "blend" and cell["parameters"].get("order", "submission") == "submission":
+                pairs.setdefault(cell["group"], {})[source_of(cell)] = cell
+        found = [compare_cells(pair[HARDWARE], pair[COMPUTE]).ratio for pair in pairs.values()
+                 if {HARDWARE, COMPUTE} <= pair.keys()]
+        ratios += [ratio for ratio in found if ratio is not None][:1]
+    return COMPUTE if ratios and float(numpy.median(ratios)) > 1 else HARDWARE
+
+
+def choose_baseline(cells: dict[str, dict], source: str = HARDWARE) -> str:
+    """The key of the baseline among the measured cells of one setting, by the rule of this module;
+    `source` is the headline source."""
     blends = [key for key, cell in cells.items() if cell["method"] == "blend"]
+    blends = [key for key in blends if source_of(cells[key]) == source] or blends
     runs: dict[str, list[dict]] = {}
     for cell in cells.values():
         runs.setdefault(cell["group"], []).append(cell)
@@ -180,12 +204,12 @@ def choose_baseline(cells: dict[str, dict]) -> str:
                                 cells[key]["statistics"]["frame"]["median"], key))
 
 
-def compare_setting(cells: dict[str, dict]) -> dict[str, tuple[str, Comparison]]:
+def compare_setting(cells: dict[str, dict], source: str = HARDWARE) -> dict[str, tuple[str, Comparison]]:
     """For each measured cell of one setting, by key: the key of its baseline, and the comparison.
 
-    All have the same baseline; a cell of another run has no ratio to it.
+    All have the same baseline, of the headline source; a cell of another run has no ratio to it.
     """
-    base = choose_baseline(cells)
+    base = choose_baseline(cells, source)
     blocks = block_medians_of(cells[base])
     result = {}
     for key, cell in cells.items():

@@ -12,6 +12,7 @@ import pandas
 
 from ..read.checks import FRAME_STATISTICS
 from .clock import clock_line, stages_are_slow
+from .fragment_source import source_of
 from .memory import own_memory
 from .statistics import FEWEST_BLOCKS
 
@@ -56,6 +57,7 @@ def flatten(cell: dict) -> dict[str, object]:
         "height": cell["size"][1],
         "format": cell["format"],
         "method": cell["method"],
+        "fragment_source": source_of(cell),
         "group": cell["group"],
         "seed": cell.get("seed"),
         "profile": cell.get("profile") or "full",

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from .. import formats
 from ..compare.quantities import Quantity, find_quantity
-from ..compare.sections import Section
+from ..compare.sections import Section, baselines_of
 from ..compare.special_values import Special
 from ..compare.statistics import Comparison, compare_cells
 from .curve_lines import MOST_DASHES, Curve, Line, panels_of, place_of
@@ -53,7 +53,8 @@ def draw_curves(section: Section, curves: tuple[Curve, ...], page: int = 0) -> F
         if index % columns == 0 or len(curves) > 1:
             axes.set_ylabel(_y_label(section, curve, lines), size=8)
         if index + columns >= len(panels):
-            axes.set_xlabel(find_quantity(curve.x, section.table).label, size=8)
+            label = find_quantity(curve.x, section.table).label
+            axes.set_xlabel(label.replace("the baseline", baselines_of(section.table)), size=8)
     return figure
 
 
@@ -63,7 +64,7 @@ def _has_base(panel: tuple[Curve, str, list[Line]]) -> bool:
 
 
 def _y_label(section: Section, curve: Curve, lines: list[Line]) -> str:
-    label = find_quantity(curve.y, section.table).label
+    label = find_quantity(curve.y, section.table).label.replace("the baseline", baselines_of(section.table))
     if curve.base is None:
         return label
     places = ((line, place_of(line.x, curve.base)) for line in lines)

@@ -111,7 +111,7 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
     """One row for each variant that was measured in every setting that has a baseline like most.
 
     Ratios to different baselines must not be averaged: only settings count whose baseline is of the
-    method that most have for it, which is `blend` where there is one.
+    method and source that most have for it, which is `blend` where there is one.
     Columns: label, method, error (mean), ratio (geometric mean), low, high (quartiles of the ratio),
     settings (how many). Variants that were not measured everywhere are left out: means over other
     sets of scenes say nothing beside these.
@@ -121,8 +121,8 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
     baselines = section.table[section.table["verdict"] == "baseline"]
     if baselines.empty:
         return pandas.DataFrame()
-    usual = baselines["method"].mode().iloc[0]
-    settings = set(baselines.loc[baselines["method"] == usual, "setting"])
+    usual = usual_baseline(section)
+    settings = set(baselines.loc[baselines["baseline_name"] == usual, "setting"])
     table = table[table["setting"].isin(settings)]
     table = table[["label", "method", "setting", "error", "ratio"]].assign(
         ratio=table["ratio"].astype(float), log=numpy.log(table["ratio"].astype(float)))
@@ -132,6 +132,11 @@ def overall(section: Section, metric: Metric) -> pandas.DataFrame:
         "method": groups["method"].first(), "error": groups["error"].mean(),
         "ratio": numpy.exp(groups["log"].mean()), "low": groups["ratio"].quantile(0.25),
         "high": groups["ratio"].quantile(0.75), "settings": len(settings)}).reset_index()
+
+
+def usual_baseline(section: Section) -> str:
+    """What most settings have for a baseline: `blend source=hardware`."""
+    return section.table.loc[section.table["verdict"] == "baseline", "baseline_name"].mode().iloc[0]
 
 
 def settings_in(section: Section, metric: Metric) -> int:
@@ -158,7 +163,7 @@ def draw_overall(section: Section, page: int, name: str) -> Figure | None:
     _draw_points(axes, table, ratios, ends, looks, names, floor, metric, table["error"], False)
     axes.set_ylabel(f"{metric.label} (mean)", size=8)
     noted = NOTED if (section.table["device_note"] != "").any() else ""
-    axes.set_xlabel(f"time over that of the baseline{noted} (log scale)", size=8)
+    axes.set_xlabel(f"time over that of {usual_baseline(section)}{noted} (log scale)", size=8)
     return figure
 
 

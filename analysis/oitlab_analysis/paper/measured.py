@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..compare.fragment_source import source_of, usual_source
 from ..compare.statistics import Comparison, compare_cells
 from ..read.cells import Collection, collect, fingerprint, left_out
 from ..read.sources import BadResults, sources_in
@@ -121,14 +122,15 @@ def _states(collections: list[Collection]) -> list[str]:
 @dataclass(frozen=True)
 class Want:
     """What a cell must be. A parameter that a cell does not have, because its method had none such
-    then, passes for off or 0."""
+    then, passes for off or 0. Its fragments come from where the papers took them."""
 
     method: str
     parameters: dict[str, object] = field(default_factory=dict)
 
     def fits(self, cell: dict) -> bool:
         return cell["status"] == "ok" and cell["method"] == self.method and all(
-            cell["parameters"].get(name, 0) == value for name, value in self.parameters.items())
+            cell["parameters"].get(name, 0) == value for name, value in self.parameters.items()) and \
+            source_of(cell) == usual_source(self.method)
 
 
 # Experiments whose tables are of times, and blocks of frames without which a time has no interval

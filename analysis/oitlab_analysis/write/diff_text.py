@@ -26,7 +26,7 @@ def _row(change: Change) -> list[str]:
     if change.against_blend:
         ratio, interval = change.against_blend
         relative = formats.with_interval(ratio, *(interval or (None, None)), change.blocks)
-        relative += NOTED if note_of(change.cell["device"]["name"], "blend") else ""
+        relative += NOTED if note_of(change.cell["device"]["name"], "blend", change.blend_source) else ""
     notes = []
     if change.image_changed:
         before, after = (formats.number(error) for error in change.error)
@@ -40,11 +40,17 @@ def _row(change: Change) -> list[str]:
 HEAD = ["cell", "B / A [95%]", "verdict", "against blend [95%]", "verdict", "what changed"]
 
 
+def _against(changes: list[Change]) -> str:
+    """What "against blend" is against, as a line; "" where no cell has that."""
+    sources = sorted({change.blend_source for change in changes} - {""})
+    return f"against blend: {' or '.join(f'blend source={source}' for source in sources)}" if sources else ""
+
+
 def terminal(result: Diff, details: bool = False) -> str:
     """Blocks of at most 100 characters a line: what changed first. `details` names the shaders."""
     lines = []
     for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
-        lines += [device, f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}"]
+        lines += [device, *filter(None, [_against(result.changes)]), f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}"]
         for change in result.changes:
             if change.cell["device"]["name"] != device:
                 continue
@@ -65,6 +71,8 @@ def markdown(result: Diff, folders: tuple[Path, Path]) -> str:
     """The same as a table."""
     lines = [f"# {markdown_text(str(folders[1]))} (B) against {markdown_text(str(folders[0]))} (A)", "",
              summary(result.changes), ""]
+    if against := _against(result.changes):
+        lines += [markdown_text(against), ""]
     lines += [f"> **Warning.** {markdown_text(w)}\n" for w in result.warnings]
     for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
         lines += [f"## {markdown_text(device)}", "", f"| {' | '.join(HEAD)} |",

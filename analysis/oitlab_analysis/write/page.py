@@ -27,6 +27,9 @@ FIGURES = (
     ("Frame, ms", "frame", "frame_ms.median", "median time of a whole frame, with its 95% interval; (n = 2): of "
      "2 blocks, too few for an interval"),
     ("Ratio", "ratio", "ratio", "frame time over that of the baseline, with its 95% interval"),
+    ("Baseline", "baseline", "baseline_name", "what the ratio is to, and where its fragments come from"),
+    ("Ratio to blend source=hardware", "to_hardware", "ratio_hardware", "frame time over that of hardware blending, "
+     "where the headline is the ratio to blending by compute shaders"),
     ("Verdict", "verdict", "verdict", "against the baseline"),
     ("RMSE", "rmse", "quality.rmse", "root mean square error against the reference image"),
     ("PSNR, dB", "psnr", "quality.psnr", "∞ means equal to the reference"),
@@ -36,6 +39,7 @@ FIGURES = (
     ("Fragments", "fragments", "counter.fragments", "transparent fragments of a frame"),
     ("Memory, MiB", "memory", "memory_total_bytes", "all buffers and images of the method"),
 )
+TEXTS = ("verdict", "baseline")
 # Nothing but what the page itself holds, and pictures beside it.
 POLICY = ("default-src 'none'; img-src data: 'self' file:; style-src 'unsafe-inline'; script-src {scripts}; "
           "base-uri 'none'; form-action 'none'")
@@ -107,9 +111,14 @@ def _table(section: Section, settings: list[dict]) -> dict[str, object]:
         columns.append({"field": field, "title": title, "hint": "",
                         "hidden": len({row["view" if field == "view" else "size_label"] for row in rows}) == 1})
     described = [describe(row) for row in rows]
+    baselines = section.table["baseline_name"].dropna().unique()
+    alone = baselines[0] if len(baselines) == 1 else ""  # then the head of the ratios names it
     for title, name, _, meaning in FIGURES:
         empty = all(texts.get(name, formats.NOTHING) in (formats.NOTHING, "") for texts in described)
-        columns.append({"field": name, "title": title, "hint": meaning, "hidden": empty, "number": name != "verdict"})
+        if name == "ratio" and alone:
+            title = f"Ratio to {alone}"
+        columns.append({"field": name, "title": title, "hint": meaning, "hidden": empty or (name == "baseline" and
+                        bool(alone)), "number": name not in TEXTS})
     return {"columns": columns,
             "rows": [_row(row, texts, places.get((row["setting"], row["key"])))
                      for row, texts in zip(rows, described)]}
@@ -127,7 +136,7 @@ def _row(row: dict, texts: dict[str, str], place: tuple[int, int] | None) -> dic
         return found | {"status": row["status"], "frame": text, "hints": found["hints"] | {"frame": text}}
     found |= {name: texts[name] for _, name, _, _ in FIGURES if texts.get(name, formats.NOTHING) != formats.NOTHING}
     found["sort"] |= {name: key for _, name, column, _ in FIGURES
-                      if name != "verdict" and (key := _sort_value(row, column)) is not None}
+                      if name not in TEXTS and (key := _sort_value(row, column)) is not None}
     if row["baseline"]:
         found["hints"]["ratio"] = " · ".join(filter(None, [f"baseline: {row['baseline']}", row["device_note"]]))
     if row["clock_note"]:

@@ -7,9 +7,10 @@ import textwrap
 import pandas
 
 from .. import formats
-from ..compare.device_notes import NOTED
+from ..compare.device_notes import NOTED, note_of
+from ..compare.fragment_source import HARDWARE
 from ..compare.labels import records
-from ..compare.sections import Section
+from ..compare.sections import Section, baselines_of, has_hardware_ratio
 from ..formats import NOTHING
 
 UNSETTLED = ("time_limit", "max_blocks")
@@ -27,6 +28,8 @@ def describe(row: dict) -> dict[str, str]:
     return {
         "frame": frame + (" †" if row.get("stop.reason") in UNSETTLED else ""),
         "ratio": "1" if row["verdict"] == "baseline" else ratio + (NOTED if row["device_note"] else ""),
+        "baseline": row["baseline_name"] or NOTHING,
+        "to_hardware": _to_hardware(row),
         "verdict": row["verdict"],
         "rmse": formats.number(row.get("quality.rmse")),
         "psnr": formats.decibels(row.get("quality.psnr"), row.get("quality.rmse")),
@@ -41,6 +44,13 @@ def describe(row: dict) -> dict[str, str]:
     }
 
 
+def _to_hardware(row: dict) -> str:
+    """The ratio to hardware blending, where it stands beside that to the baseline."""
+    noted = NOTED if note_of(row["device"], "blend", HARDWARE) else ""
+    text = formats.with_interval(*(row.get(f"ratio_hardware{suffix}") for suffix in ("", ".low", ".high")))
+    return text if text == NOTHING else text + noted
+
+
 def error_caption(row: dict) -> str:
     """The error of an image in a few words, for its caption."""
     if not formats.is_number(row.get("quality.rmse")):
@@ -51,9 +61,10 @@ def error_caption(row: dict) -> str:
     return f"RMSE {texts['rmse']}, PSNR {texts['psnr']} dB, pixels off: {texts['pixels_off']}"
 
 
+Columns = tuple[tuple[str, str, int, bool], ...]
 # Column head, name in describe(), width in characters, right-aligned. With two spaces between
 # columns a line has at most 100 characters.
-TERMINAL_COLUMNS = (
+TERMINAL_COLUMNS: Columns = (
     ("method", "label", 20, False),
     ("frame ms [95%]", "frame", 25, True),
     ("ratio [95%]", "ratio", 23, True),
@@ -61,16 +72,27 @@ TERMINAL_COLUMNS = (
     ("RMSE", "rmse", 8, True),
     ("MiB", "memory", 5, True),
 )
+# With the ratio to hardware blending beside, without its interval, which the page has.
+COLUMNS_WITH_HARDWARE: Columns = (
+    ("method", "label", 15, False),
+    ("frame ms [95%]", "frame", 25, True),
+    ("ratio [95%]", "ratio", 23, True),
+    ("verdict", "verdict", 9, False),
+    ("to hardware", "to_hardware_alone", 11, True),
+    ("RMSE", "rmse", 7, True),
+)
 
 
 def terminal_table(section: Section) -> str:
     """Aligned text, one block of lines per setting, at most 100 columns wide. Begins with an empty line."""
     lines: list[str] = []
-    head = "  ".join(_align(text, width, right) for text, _, width, right in TERMINAL_COLUMNS)
+    beside = has_hardware_ratio(section.table)
+    columns = COLUMNS_WITH_HARDWARE if beside else TERMINAL_COLUMNS
+    head = "  ".join(_align(text, width, right) for text, _, width, right in columns)
     for _, cells in section.settings():
-        lines += ["", *textwrap.wrap(setting_heading(cells), TERMINAL_WIDTH), head.rstrip()]
+        lines += ["", *textwrap.wrap(setting_heading(cells) + _ratio_text(cells), TERMINAL_WIDTH), head.rstrip()]
         for row in records(cells):
-            lines += _terminal_rows(row)
+            lines += _terminal_rows(row, columns)
     return "\n".join(lines)
 
 
@@ -100,10 +122,19 @@ def setting_heading(cells: pandas.DataFrame) -> str:
     return " · ".join(parts)
 
 
-def _terminal_rows(row: dict) -> list[str]:
+def _ratio_text(cells: pandas.DataFrame) -> str:
+    """What the ratios of a setting are to, for its heading; "" where there are none."""
+    if not cells["baseline_name"].notna().any():
+        return ""
+    beside = ", beside it to blend source=hardware" if has_hardware_ratio(cells) else ""
+    return f" · ratio to {baselines_of(cells)}{beside}"
+
+
+def _terminal_rows(row: dict, columns: Columns) -> list[str]:
     """One cell; a label that is too long goes on in the next line, nothing is cut off."""
     texts = describe(row)
-    width = TERMINAL_COLUMNS[0][2]
+    texts["to_hardware_alone"] = texts.get("to_hardware", NOTHING).partition(" [")[0]
+    width = columns[0][2]
     names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
     if row["status"] != "ok":
         reason = textwrap.wrap(f"{row['status']}: {texts['reason']}", TERMINAL_WIDTH - width - 2)
@@ -111,7 +142,7 @@ def _terminal_rows(row: dict) -> list[str]:
         names += [""] * (height - len(names))
         reason += [""] * (height - len(reason))
         return [f"{n:<{width}}  {r}".rstrip() for n, r in zip(names, reason)]
-    values = [_align(texts[name], w, right) for _, name, w, right in TERMINAL_COLUMNS[1:]]
+    values = [_align(texts[name], w, right) for _, name, w, right in columns[1:]]
     return ["  ".join([f"{names[0]:<{width}}", *values]).rstrip(), *names[1:]]
 
 
@@ -126,6 +157,8 @@ MARKDOWN_COLUMNS = (
     ("method", "label"),
     ("frame ms [95%]", "frame"),
     ("ratio [95%]", "ratio"),
+    ("baseline", "baseline"),
+    ("ratio to blend source=hardware [95%]", "to_hardware"),
     ("verdict", "verdict"),
     ("RMSE", "rmse"),
     ("PSNR dB", "psnr"),
@@ -150,13 +183,15 @@ def markdown_text(text: str) -> str:
 def markdown_table(section: Section) -> str:
     """The main table in Markdown, one row per cell."""
     first_figure = 4
-    rules = ["---" if i < first_figure or head == "verdict" else "---:"
-             for i, (head, _) in enumerate(MARKDOWN_COLUMNS)]
-    lines = [_markdown_row([head for head, _ in MARKDOWN_COLUMNS]), _markdown_row(rules)]
+    beside = has_hardware_ratio(section.table)
+    columns = [column for column in MARKDOWN_COLUMNS if beside or column[1] != "to_hardware"]
+    rules = ["---" if i < first_figure or head in ("verdict", "baseline") else "---:"
+             for i, (head, _) in enumerate(columns)]
+    lines = [_markdown_row([head for head, _ in columns]), _markdown_row(rules)]
     for row in records(section.table):
         texts = describe(row)
-        values = [row[name] for _, name in MARKDOWN_COLUMNS[:first_figure]]
-        values += [texts.get(name, NOTHING) for _, name in MARKDOWN_COLUMNS[first_figure:]]
+        values = [row[name] for _, name in columns[:first_figure]]
+        values += [texts.get(name, NOTHING) for _, name in columns[first_figure:]]
         lines.append(_markdown_row([markdown_text(value) for value in values]))
     return "\n".join(lines)
 

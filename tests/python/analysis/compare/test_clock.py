@@ -67,7 +67,7 @@ def test_the_report_leaves_slow_stages_out_and_says_so(tmp_path):
     section, = make_sections(collection.cells, add_comparisons(as_table(collection.cells), collection.cells))
     figure = stacks.draw_stages(section, 0)
     assert len(figure.axes) == 1, "a panel for teapot alone"
-    said = " ".join(make_report([tmp_path]).text.split())
+    said = " ".join(make_report([tmp_path], all_warnings=True).text.split())
     assert "Stage times of 1 of 2 cells were left out" in said and "The median frame of 1 of 2 cells" in said
 
 
@@ -89,7 +89,7 @@ def test_a_line_says_what_the_clock_did(record, line):
 
 def test_the_report_shows_the_clock_of_cells_that_recorded_it(tmp_path):
     def texts():
-        terminal = " ".join(make_report([tmp_path]).text.split())
+        terminal = " ".join(make_report([tmp_path], all_warnings=True).text.split())
         return terminal, *((tmp_path / f"report.{kind}").read_text(encoding="utf-8") for kind in ("html", "md"))
 
     write_cell(tmp_path, make_cell("city"))  # made before the clock was recorded
