@@ -154,7 +154,8 @@ def run_report(options: argparse.Namespace) -> tuple[str, int]:
         raise BadResults("--per, --base and --only are of a chart that --x asks for")
     result = make_report(options.results, options.out, options.metric, options.all_charts, curves,
                          options.warnings)
-    return "\n".join(filter(None, [result.text, *map(str, result.files)])), EXIT_CELLS_FAILED if result.failed else EXIT_DONE
+    text = "\n".join(filter(None, [result.text, *map(str, result.files)]))
+    return text, EXIT_CELLS_FAILED if result.failed else EXIT_DONE
 
 
 def run_diff(options: argparse.Namespace) -> tuple[str, int]:

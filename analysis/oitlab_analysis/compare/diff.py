@@ -187,8 +187,9 @@ def compare_pair(before: dict, after: dict, all_blends: tuple[Blends, Blends], l
         if all(ratios):
             relative = _ratio(*ratios)
     errors = tuple((c.get("quality") or {}).get("rmse") for c in (before, after))
-    return Change(after, label, ratio, interval, min(map(block_count, (before, after))), relative,
-                  source_of(blends[1]) if blends and relative else "", Shaders.of(before, after), before.get("image_hash") != after.get("image_hash"), errors)
+    source = source_of(blends[1]) if blends and relative else ""
+    return Change(after, label, ratio, interval, min(map(block_count, (before, after))), relative, source,
+                  Shaders.of(before, after), before.get("image_hash") != after.get("image_hash"), errors)
 
 
 def diff(folder_a: Path, folder_b: Path) -> Diff:

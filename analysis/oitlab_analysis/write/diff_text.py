@@ -50,7 +50,8 @@ def terminal(result: Diff, details: bool = False) -> str:
     """Blocks of at most 100 characters a line: what changed first. `details` names the shaders."""
     lines = []
     for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
-        lines += [device, *filter(None, [_against(result.changes)]), f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}"]
+        lines += filter(None, [device, _against(result.changes)])
+        lines.append(f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}")
         for change in result.changes:
             if change.cell["device"]["name"] != device:
                 continue

@@ -133,7 +133,8 @@ def _ratio_text(cells: pandas.DataFrame) -> str:
 def _terminal_rows(row: dict, columns: Columns) -> list[str]:
     """One cell; a label that is too long goes on in the next line, nothing is cut off."""
     texts = describe(row)
-    texts["to_hardware_alone"] = texts.get("to_hardware", NOTHING).partition(" [")[0]
+    number, interval, rest = texts.get("to_hardware", NOTHING).partition(" [")
+    texts["to_hardware_alone"] = number + rest.partition("]")[2] if interval else number
     width = columns[0][2]
     names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
     if row["status"] != "ok":

@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 from program import PROGRAM
+from runs import EXPERIMENT
 
 
 @pytest.fixture(scope="session")
@@ -35,3 +36,15 @@ def render_json(oitlab):
         return json.loads(done.stdout)
 
     return render
+
+
+@pytest.fixture
+def toml(tmp_path):
+    path = tmp_path / "resumed.toml"
+    path.write_text(EXPERIMENT)
+    return path
+
+
+@pytest.fixture
+def results(tmp_path):
+    return tmp_path / "results"

@@ -4,6 +4,7 @@ import json
 import os
 
 import pytest
+from runs import cells
 
 EXPERIMENT = """
 name = "tiny"
@@ -25,10 +26,6 @@ def tiny(tmp_path):
     path = tmp_path / "tiny.toml"
     path.write_text(EXPERIMENT)
     return path
-
-
-def cells(results):
-    return {p.name: json.loads(p.read_text()) for p in (results / "cells").glob("*.json")}
 
 
 def test_measures_then_resumes(oitlab, tiny, tmp_path):
