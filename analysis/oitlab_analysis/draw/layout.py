@@ -200,7 +200,7 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
             y0 = py + dy - {"bottom": 0, "center": height / 2, "top": height}[vertical]
             box = (x0, y0, x0 + width, y0 + height)
             inside = box[0] >= left - 2 and box[2] <= right + 6 and box[1] >= bottom and box[3] <= top + 2
-            if inside and not _overlaps(box, taken):
+            if inside and not _overlaps(box, taken) and _nearest(box, index, at, points):
                 taken = numpy.vstack([taken, box])
                 axes.annotate(text, (x, y), (dx, dy), textcoords="offset points", ha=horizontal, va=vertical,
                               size=size, color=darker(colour), linespacing=1.0, zorder=4,
@@ -218,6 +218,19 @@ def _offsets() -> list[tuple[float, float, str, str]]:
                   (0, -away, "center", "top"), (away, away, "left", "bottom"), (away, -away, "left", "top"),
                   (-away, away, "right", "bottom"), (-away, -away, "right", "top")]
     return found
+
+
+def _nearest(box: tuple[float, float, float, float], own: int, at: Sequence[tuple[float, float]],
+             points: Sequence[tuple[float, float, str, str]]) -> bool:
+    """Whether no other point is nearer to a label than its own, so that it would be taken for the other's.
+    A label that names no variant (`wboit`) may stand by another point of its colour."""
+    places = numpy.asarray(at)
+    outside = [numpy.maximum(numpy.maximum(box[axis] - places[:, axis], places[:, axis] - box[axis + 2]), 0)
+               for axis in (0, 1)]
+    away = numpy.hypot(*outside)
+    nearer = numpy.flatnonzero(away < away[own])
+    text, colour = points[own][2:]
+    return all(points[other][3] == colour and "=" not in text for other in nearer)
 
 
 def _overlaps(box: tuple[float, float, float, float], others: numpy.ndarray) -> bool:

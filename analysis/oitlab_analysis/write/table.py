@@ -131,20 +131,23 @@ def _ratio_text(cells: pandas.DataFrame) -> str:
 
 
 def _terminal_rows(row: dict, columns: Columns) -> list[str]:
-    """One cell; a label that is too long goes on in the next line, nothing is cut off."""
+    """One cell; a label that is too long has a line of its own, nothing is cut off."""
     texts = describe(row)
     number, interval, rest = texts.get("to_hardware", NOTHING).partition(" [")
     texts["to_hardware_alone"] = number + rest.partition("]")[2] if interval else number
     width = columns[0][2]
-    names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
     if row["status"] != "ok":
+        names = textwrap.wrap(row["label"], width, subsequent_indent="  ")
         reason = textwrap.wrap(f"{row['status']}: {texts['reason']}", TERMINAL_WIDTH - width - 2)
         height = max(len(names), len(reason))
         names += [""] * (height - len(names))
         reason += [""] * (height - len(reason))
         return [f"{n:<{width}}  {r}".rstrip() for n, r in zip(names, reason)]
-    values = [_align(texts[name], w, right) for _, name, w, right in columns[1:]]
-    return ["  ".join([f"{names[0]:<{width}}", *values]).rstrip(), *names[1:]]
+    values = "  ".join([" " * width, *(_align(texts[name], w, right) for _, name, w, right in columns[1:])]).rstrip()
+    room = len(values) - len(values.lstrip()) - 2
+    if len(row["label"]) <= room:
+        return [row["label"] + values[len(row["label"]):]]
+    return [*textwrap.wrap(row["label"], TERMINAL_WIDTH, subsequent_indent="  "), values]
 
 
 def _align(text: str, width: int, right: bool) -> str:

@@ -122,6 +122,18 @@ def test_a_label_keeps_clear_of_points_without_one_and_of_intervals():
     assert places(lines=[(5, 5, 6, 5)]) != ("left", "center")
 
 
+def test_a_label_is_never_nearer_to_another_point_than_to_its_own():
+    def written(text, colour):
+        _, (axes,) = panel_grid([""], 1, 2.0)
+        axes.set_xlim(0, 10)
+        axes.set_ylim(0, 10)
+        ring = [(5 + dx, 5 + dy, "", colour)  # 5 points away, where a label of 9 points away has room
+                for dx in (-0.11, 0, 0.11) for dy in (-0.35, 0, 0.35) if dx or dy]
+        return place_labels(axes, [(5, 5, text, "#000000"), *ring])[0]
+    assert not written("m (n=1)", "#ff0000") and not written("m", "#ff0000"), "another method's points"
+    assert not written("m (n=1)", "#000000") and written("m", "#000000"), "points of its own method"
+
+
 def test_long_entries_of_a_legend_wrap_and_fit_below_its_height():
     handles = [Line2D([], [], label=f"depth_peeling (layers={n}, mode=front_to_back, back=list, atomics=auto)")
                for n in range(9)] + [Line2D([], [], label=f"m{n}") for n in range(10)]

@@ -112,7 +112,7 @@ def test_a_device_note_is_in_the_caption_of_a_chart_of_ratios(tmp_path):
         make_results(tmp_path / name, methods=3, scenes=2, device=DEVICE | {"name": name})
         section = section_of(tmp_path / name)
         label = drawn(quality_speed.draw_overall, section, 0, "rmse").axes[0].get_xlabel()
-        assert ("baseline ‡" in label) == ("2 of its 66 TPCs" in footnotes(section)) == noted
+        assert ("blend source=hardware ‡" in label) == ("2 of its 66 TPCs" in footnotes(section)) == noted
 
 
 def test_points_are_named_where_they_stand(tmp_path):

@@ -105,3 +105,16 @@ def test_cells_that_nothing_tells_apart_are_numbered(tmp_path):
         write_cell(tmp_path, make_cell(seed=seed) | {"id": f"seed-{seed}"})
     text = make_report([tmp_path]).text
     assert re.search(r"^blend  ", text, re.M) and re.search(r"^blend #2  ", text, re.M)
+
+
+def test_a_long_name_has_a_line_of_its_own_and_a_shorter_one_the_room_there_is(tmp_path):
+    for n in (1, 2):
+        parameters = {"a_parameter_with_a_long_name": n, "another_one_that_tells_nothing_apart": n}
+        write_cell(tmp_path, make_cell(method="m", parameters=parameters))
+    for order in ("sorted", "submission"):
+        write_cell(tmp_path, make_cell(parameters={"order": order}, blocks=3))
+    lines = make_report([tmp_path]).text.splitlines()
+    assert any(re.match(r"blend \(order=submission\) +[0-9.]+ \(n = 3\)", line) for line in lines)
+    place = next(i for i, line in enumerate(lines) if line.startswith("m (a_parameter_with_a_long_name=1, another"))
+    assert re.match(r" {20,}[0-9.]+ \[", lines[place + 1])
+    assert max(map(len, lines)) <= 100

@@ -61,7 +61,7 @@ def test_markdown_table_is_regular_and_its_links_lead_somewhere(results):
     markdown = (results / "report.md").read_text(encoding="utf-8")
     table = [line for line in markdown.splitlines() if line.startswith("|")]
     assert len(table) == 2 + 10
-    assert {len(re.findall(r"(?<!\\)\|", line)) for line in table} == {17}
+    assert {len(re.findall(r"(?<!\\)\|", line)) for line in table} == {18}
     links = re.findall(r"!\[[^\]]*\]\(([^)]*)\)", markdown)
     assert len(links) == 8 + 5
     assert all((results / link).is_file() for link in links)
