@@ -140,18 +140,27 @@ def save_charts(sections: list[Section], folder: Path, metric: str = "rmse", eve
     possible = tasks_of(sections, metric, asked)
     order = list(kinds_with(asked))
     _tasks = sorted(choose(possible, everything), key=lambda t: (t.number, order.index(t.name), t.page))
-    arguments = (range(len(_tasks)), [folder] * len(_tasks), [metric] * len(_tasks))
-    workers = min(len(os.sched_getaffinity(0)), len(_tasks))
-    if len(_tasks) > FEW_CHARTS and workers > 1:  # matplotlib does not run in threads
-        with ProcessPoolExecutor(workers, multiprocessing.get_context("fork")) as pool:
-            charts = list(pool.map(_save_chart, *arguments))
-    else:
-        charts = list(map(_save_chart, *arguments))
+    charts = _save_tasks(folder, metric)
     by_section: list[list[Chart]] = [[] for _ in sections]
     for task, chart in zip(_tasks, charts):
         if chart:
             by_section[task.number - 1].append(chart)
     return by_section, sum(map(len, possible)) - len(_tasks)
+
+
+def _save_tasks(folder: Path, metric: str) -> list[Chart | None]:
+    """The charts of `_tasks`, many of them in several processes: matplotlib does not run in threads."""
+    arguments = (range(len(_tasks)), [folder] * len(_tasks), [metric] * len(_tasks))
+    workers = min(len(os.sched_getaffinity(0)), len(_tasks))
+    if len(_tasks) > FEW_CHARTS and workers > 1:
+        try:
+            pool = ProcessPoolExecutor(workers, multiprocessing.get_context("fork"))
+        except OSError:
+            pass  # its locks need shared memory: a container may have no /dev/shm that the user can write
+        else:
+            with pool:
+                return list(pool.map(_save_chart, *arguments))
+    return list(map(_save_chart, *arguments))
 
 
 def _save_chart(index: int, folder: Path, metric: str) -> Chart | None:

@@ -70,7 +70,8 @@ def test_two_runs_fill_one_folder_and_measure_everything_once(oitlab, toml, resu
 @pytest.mark.parametrize(("name", "code"), [("SIGINT", 130), ("SIGTERM", 143)])
 def test_a_signal_drops_the_group_and_says_how_to_go_on(oitlab, toml, results, name, code):
     toml.write_text(EXPERIMENT.replace("time_limit = 0.1", "time_limit = 20\nmin_blocks = 150"))
-    run = subprocess.Popen([oitlab.program, "run", toml, "--results", results],
+    # A shell that starts the tests with `&` has them ignore SIGINT, and `run` respects that.
+    run = subprocess.Popen(["env", "--default-signal=INT,TERM", oitlab.program, "run", toml, "--results", results],
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60
     while not list(results.glob("running/*/*.owner")) and time.monotonic() < deadline:

@@ -58,11 +58,20 @@ def saved(tmp_path_factory):
     return section, folder / "plots", found
 
 
-def test_saved_charts_exist_as_png_svg_and_pdf_and_are_reproducible(saved, tmp_path):
+def test_saved_charts_exist_as_png_svg_and_pdf_and_are_the_same_from_one_process(saved, tmp_path, monkeypatch):
     section, folder, found = saved
     first = {p.name: p.read_bytes() for p in folder.iterdir()}
     assert set(first) == {f"{chart.name}.{kind}" for chart in found for kind in ("png", "svg", "pdf")}
+    refused = []
+
+    def refuse(*_):
+        refused.append("no /dev/shm")
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(charts, "ProcessPoolExecutor", refuse)
+    monkeypatch.setattr(charts.os, "sched_getaffinity", lambda _: {0, 1})
     charts.save_charts([section], tmp_path / "plots")
+    assert refused
     assert first == {p.name: p.read_bytes() for p in (tmp_path / "plots").iterdir()}
 
 
