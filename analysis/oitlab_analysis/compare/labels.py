@@ -11,6 +11,7 @@ import pandas
 
 from ..formats import is_number, natural_key, parameter
 
+MOST = 2 / 3  # of the variants: a parameter whose values are spread more evenly is what a chart is about
 SCENE_KNOBS = ("opacity", "detail", "content_hash")
 
 
@@ -54,9 +55,9 @@ def varying_parameters(table: pandas.DataFrame) -> dict[str, list[str]]:
 def short_labels(table: pandas.DataFrame) -> tuple[dict[str, str], str]:
     """Names for a chart of these rows, by label, and what its caption must say of them, or "".
 
-    What all variants of a method in the chart have in common is not named. A value that more than half of
-    them have is named once, in the caption: `abuffer`, `abuffer (sort=merge)`, and "Where a name does not
-    say otherwise, abuffer has sort=auto."
+    What all variants of a method in the chart have in common is not named. A value that most of them have is
+    named once, in the caption: `abuffer`, `abuffer (sort=merge)`, and "Where a name does not say otherwise,
+    abuffer has sort=auto."
     """
     variants = table.drop_duplicates("label")
     varying = varying_parameters(variants)
@@ -79,11 +80,11 @@ def short_labels(table: pandas.DataFrame) -> tuple[dict[str, str], str]:
 
 
 def _held_by_most(texts: list[dict[str, str]]) -> dict[str, str]:
-    """The values that more than half of the variants have, by parameter."""
+    """The values that most of the variants have, by parameter."""
     found = {}
     for name in dict.fromkeys(name for own in texts for name in own):
         value, count = Counter(own.get(name) for own in texts).most_common(1)[0]
-        if value is not None and 2 * count > len(texts):
+        if value is not None and count >= MOST * len(texts):
             found[name] = value
     return found
 
