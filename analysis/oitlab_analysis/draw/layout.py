@@ -199,7 +199,7 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str, str]], si
             x0 = px + dx - {"left": 0, "center": width / 2, "right": width}[horizontal]
             y0 = py + dy - {"bottom": 0, "center": height / 2, "top": height}[vertical]
             box = (x0, y0, x0 + width, y0 + height)
-            inside = box[0] >= left - 2 and box[2] <= right + 6 and box[1] >= bottom and box[3] <= top + 2
+            inside = box[0] >= left + 1 and box[2] <= right + 6 and box[1] >= bottom and box[3] <= top + 2
             if inside and not _overlaps(box, taken) and _nearest(box, index, at, points):
                 taken = numpy.vstack([taken, box])
                 axes.annotate(text, (x, y), (dx, dy), textcoords="offset points", ha=horizontal, va=vertical,
