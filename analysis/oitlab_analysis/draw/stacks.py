@@ -17,6 +17,7 @@ from ..compare.labels import short_labels
 from ..compare.memory import PREFIX
 from ..compare.sections import Section
 from .layout import (
+    CHARACTER,
     LABEL,
     TITLE_LINE,
     TITLE_SIZE,
@@ -32,6 +33,8 @@ from .style import COLOURS, GRID, HATCHES, PAGE, TALLEST
 
 ROW = 0.17  # inches
 NAMES = 1.9  # inches left of the axes
+BARS = PAGE - NAMES - 0.1  # inches of the axes
+NOTE_SIZE = 6.2
 FOOT = 0.27  # inches below a panel: tick labels
 TALLEST_PAGE = TALLEST - 1.0  # inches of panels: what a legend and the axis label leave
 GREY = "#bfc5cb"
@@ -172,7 +175,8 @@ def draw_memory(section: Section, page: int, metric: str = "") -> Figure | None:
         shown.append((name, cells.assign(note=_largest(cells, own))))
     if rest:
         styles["memory.other"] = (COLOURS[-1], "///")
-        names["memory.other"] = f"{len(rest)} smaller buffers"
+        names["memory.other"] = f"{len(rest)} smaller buffers" if len(rest) > 1 else \
+            rest[0].removeprefix(PREFIX).removeprefix("memory.")
     for column, style in SHARED.items():
         if any(column in cells for _, cells in shown):
             styles[column], names[column] = style, column.removeprefix("memory.")
@@ -216,7 +220,7 @@ def _draw(settings: list[tuple[str, pandas.DataFrame]], styles: dict[str, tuple[
     top, axes = legend, None
     for title, head, height, (_, cells) in zip(titles, heads, bars, settings):
         top += head
-        axes = figure.add_axes((NAMES / PAGE, 1 - (top + height) / total, (PAGE - NAMES - 0.1) / PAGE,
+        axes = figure.add_axes((NAMES / PAGE, 1 - (top + height) / total, BARS / PAGE,
                                 height / total))
         _draw_panel(axes, cells, styles, divisor, mark is not None)
         axes.set_title(title, loc="left", size=TITLE_SIZE, pad=3)
@@ -241,7 +245,11 @@ def _draw_panel(axes: Axes, cells: pandas.DataFrame, styles: dict[str, tuple[str
         starts += widths
     frames = cells["frame"].to_numpy(dtype=float) if marked else sums
     longest = min(120.0, frames.max()) if marked else limit
-    axes.set_xlim(0, max(limit, longest) * (1.12 if marked else 1.75))  # a note stands right of its bar
+    # A note stands right of its bar, or of the mark of the frame.
+    ends = numpy.maximum(sums, numpy.where(frames <= longest, frames, 0))
+    room = [1 - (len(note) * NOTE_SIZE * CHARACTER / 72 + 0.1) / BARS for note in cells["note"]]
+    last = max(limit, longest)
+    axes.set_xlim(0, max([last, *(end / part for end, part in zip(ends, room) if end <= last)]))
     if marked:
         inside = frames <= longest
         axes.plot(frames[inside], rows[inside], color="black", marker="|", markersize=9, markeredgewidth=1.6,
@@ -251,7 +259,7 @@ def _draw_panel(axes: Axes, cells: pandas.DataFrame, styles: dict[str, tuple[str
         text = cells["note"].iloc[row] + (" →" if beyond else "")
         at = axes.get_xlim()[1] if beyond else max(value, frames[row] if marked and frames[row] <= longest else 0)
         axes.annotate(text, (at, row), (-3 if beyond else 4, 0), textcoords="offset points", va="center",
-                      ha="right" if beyond else "left", size=6.2,
+                      ha="right" if beyond else "left", size=NOTE_SIZE,
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 1} if beyond else None)
     axes.set_ylim(len(cells) - 0.45, -0.55)
     labels, size = _fitting(cells["name"].tolist())

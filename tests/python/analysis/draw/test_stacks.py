@@ -97,3 +97,14 @@ def test_nothing_from_nothing(tmp_path):
     section = section_of(tmp_path)
     assert stacks.stage_pages(section) == stacks.memory_pages(section) == 0
     assert stacks.draw_stages(section, 0) is None and stacks.draw_memory(section, 0) is None
+
+
+def test_notes_have_room_right_of_their_bars_and_bars_most_of_the_panel(tmp_path):
+    for method, size in (("a", 2**20), ("b", 60 * 2**20)):
+        cell = make_cell(method=method)
+        cell["memory_bytes"] = {"total": size, "buffers": {"a buffer with a long name": size}}
+        write_cell(tmp_path, cell)
+    axes, = drawn(stacks.draw_memory, section_of(tmp_path), 0).axes
+    right = axes.get_window_extent().x1
+    assert len(axes.texts) == 2 and all(text.get_window_extent().x1 <= right for text in axes.texts)
+    assert axes.get_xlim()[1] < 60 / 0.55

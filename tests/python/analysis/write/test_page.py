@@ -288,7 +288,7 @@ def test_pictures_beyond_the_budget_are_shown_from_the_disk(browser, tmp_path, m
     assert browser.errors() == []
 
 
-@pytest.mark.skipif("OITLAB_SLOW" not in os.environ, reason="takes two minutes; OITLAB_SLOW=1 runs it")
+@pytest.mark.skipif("OITLAB_SLOW" not in os.environ, reason="takes three minutes; OITLAB_SLOW=1 runs it")
 def test_a_page_of_2000_cells_is_usable(browser, tmp_path):
     """With images as large as renderings of 640x360, whose copies take all the room that they may."""
     make_sweep(tmp_path, 2000, (640, 360))
