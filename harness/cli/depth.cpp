@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/device_options.h"
+#include "cli/scene_options.h"
 #include "quality/compare.h"
 #include "render/depth_complexity.h"
 #include "results/describe.h"
@@ -149,8 +150,7 @@ void addDepth(CLI::App& program, Action& action) {
   verb->add_option("--histogram", options->histogram,
                    "Pixels by number of fragments, log scale (.png; a .txt without Python)")
       ->type_name("FILE");
-  verb->add_flag("--allow-outside", options->allowOutside,
-                 "Let a scene file name files outside its folder");
+  addAllowOutside(*verb, options->allowOutside);
   verb->add_flag("--json", options->json, "One JSON object on stdout, with the histogram");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return depth(*options); }; });

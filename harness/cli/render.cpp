@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/device_options.h"
+#include "cli/scene_options.h"
 #include "image/hash.h"
 #include "measure/statistics.h"
 #include "results/describe.h"
@@ -150,8 +151,7 @@ void addRender(CLI::App& program, Action& action) {
   verb->add_option(
       "--out", options->out,
       "Image file, .exr (linear) or .png (default: SCENE-METHOD.png, or none with --json)");
-  verb->add_flag("--allow-outside", options->allowOutside,
-                 "Let a scene file name files outside its folder");
+  addAllowOutside(*verb, options->allowOutside);
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   addDeviceOptions(*verb, options->device);
   verb->callback([=, &action] { action = [=] { return render(*options); }; });

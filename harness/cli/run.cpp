@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/device_options.h"
+#include "cli/scene_options.h"
 #include "experiment/plan.h"
 #include "sweep/run.h"
 #include "util/error.h"
@@ -14,7 +15,7 @@ namespace {
 struct RunOptions {
   std::string file, results, shard = "1/1", profile = "auto", size;
   float detail = 0;  // 0: as the file says
-  bool dryRun = false;
+  bool dryRun = false, allowOutside = false;
   SweepOptions sweep;
 };
 
@@ -33,6 +34,7 @@ ExperimentOptions readOptions(const RunOptions& options, const DeviceInfo& devic
   const bool automatic = options.profile == "auto";
   read.profile = automatic ? (device.type == "cpu" ? "cpu" : "full") : options.profile;
   read.profileRequired = !automatic;
+  read.allowOutside = options.allowOutside;
   if (options.detail > 0) read.detail = options.detail;
   if (!options.size.empty()) read.size = parseSize(options.size);
   return read;
@@ -107,7 +109,8 @@ int measure(const Experiment& experiment, const std::vector<CellSpec>& cells,
 }
 
 int run(const RunOptions& options) {
-  readExperiment(options.file);  // mistakes are told before a device is looked for
+  // Mistakes are told before a device is looked for.
+  readExperiment(options.file, {.allowOutside = options.allowOutside});
   const Shard shard = parseShard(options.shard);
   const DeviceInfo info = chosenDevice(options.sweep.device);
   const Experiment experiment = readExperiment(options.file, readOptions(options, info));
@@ -158,6 +161,7 @@ void addRun(CLI::App& program, Action& action) {
                  "shader or program, and name them");
   verb->add_flag("--dry-run", options->dryRun,
                  "List the cells and how long they would take; measure nothing");
+  addAllowOutside(*verb, options->allowOutside);
   addDeviceOptions(*verb, options->sweep.device);
   verb->callback([=, &action] { action = [=] { return run(*options); }; });
 }

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/scene_options.h"
 #include "results/describe.h"
 #include "scene/coverage.h"
 #include "scene/quads.h"
@@ -89,8 +90,7 @@ void addScene(CLI::App& program, Action& action) {
   verb->add_option("--size", options->size, "WxH in pixels")->capture_default_str();
   verb->add_option("--opacity", options->opacity, "Opacity for all materials, in (0, 1]");
   verb->add_option("--detail", options->detail, "Share of a generated scene's triangles, (0, 1]");
-  verb->add_flag("--allow-outside", options->allowOutside,
-                 "Let a scene file name files outside its folder");
+  addAllowOutside(*verb, options->allowOutside);
   verb->add_flag("--json", options->json, "One JSON object on stdout");
   verb->callback([=, &action] { action = [=] { return describeScene(*options); }; });
 }

@@ -88,9 +88,13 @@ Experiment readWithProfile(const fs::path& path, const ExperimentOptions& option
 Experiment readExperiment(const fs::path& path, const ExperimentOptions& options) {
   Experiment experiment = readWithProfile(path, options);
   // A mistake in a profile that is not wanted now is one all the same.
-  for (const std::string& name : profileNames(path.string(), parse(path.string())))
-    if (name != experiment.profile) readWithProfile(path, {.profile = name});
-  if (experiment.profile != "full") readWithProfile(path, {});
+  const ExperimentOptions full{.allowOutside = options.allowOutside};
+  for (const std::string& name : profileNames(path.string(), parse(path.string()))) {
+    ExperimentOptions other = full;
+    other.profile = name;
+    if (name != experiment.profile) readWithProfile(path, other);
+  }
+  if (experiment.profile != "full") readWithProfile(path, full);
   return experiment;
 }
 

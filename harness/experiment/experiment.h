@@ -13,6 +13,7 @@ struct ExperimentOptions {
   bool profileRequired = false;  ///< false: "full" where the file has no such profile
   std::optional<float> detail;   ///< of every generated scene, (0, 1]
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  ///< instead of all sizes
+  bool allowOutside = false;  ///< every scene file may name files outside its folder
 };
 
 /// A sweep as a TOML file describes it (docs/experiments.md).

@@ -80,6 +80,7 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node,
                                    SceneContext& context) {
   const fs::path& folder = context.folder;
   SceneChoice choice;
+  choice.spec.allowOutside = context.options.allowOutside;
   const toml::table* given = node.as_table();
   if (given == nullptr) {
     choice.spec.source = resolveSource(owner, node, owner.string(node, "a scene"), false, folder);
@@ -92,7 +93,7 @@ std::vector<SceneChoice> readScene(TomlTable& owner, const toml::node& node,
   if (source.empty()) table.failAt(node, "a scene needs a 'source'");
   const bool optional = table.value<bool>("optional", false);
   choice.spec.source = resolveSource(table, node, source, optional, folder);
-  choice.spec.allowOutside = table.value<bool>("allow_outside", false);
+  choice.spec.allowOutside |= table.value<bool>("allow_outside", false);
   choice.contentHash = contentHashOf(choice.spec);
   choice.spec.detail = float(table.number("detail", 1.0, 1e-6, 1.0));
   if (findGenerated(choice.spec.source))

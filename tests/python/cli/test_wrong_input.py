@@ -144,6 +144,30 @@ def test_a_scene_may_not_read_what_is_outside_its_folder(oitlab, tmp_path):
     assert oitlab("scene", "scene/x.obj", "--allow-outside", cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.parametrize("verb, arguments", [
+    ("depth", ["scene/x.obj", "--size", "8x8"]),
+    ("render", ["--scene", "scene/x.obj", "--method", "blend", "--size", "8x8"]),
+    ("run", ["x.toml"]),
+    ("run", ["allowed.toml"])])
+def test_every_verb_that_loads_a_scene_can_allow_it_other_folders(oitlab, tmp_path, verb, arguments):
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (folder / "x.obj").write_text("mtllib ../secret.mtl\n" + TRIANGLE)
+    (tmp_path / "secret.mtl").write_text("newmtl m\n")
+    rest = 'sizes = ["8x8"]\nmethods = [{ method = "reference" }]\n[measure]\ntime_limit = 0.1\n'
+    (tmp_path / "x.toml").write_text('scenes = ["scene/x.obj"]\n' + rest)
+    allowed = '{ source = "scene/x.obj", allow_outside = true }'
+    (tmp_path / "allowed.toml").write_text(f"scenes = [{allowed}]\n" + rest)
+    refused = oitlab(verb, *arguments, cwd=tmp_path)
+    if arguments == ["allowed.toml"]:
+        assert refused.returncode == 0, refused.stderr
+        return
+    assert refused.returncode == (1 if verb == "run" else 2), refused.stderr
+    assert "--allow-outside" in refused.stderr
+    allowed = oitlab(verb, *arguments, "--allow-outside", cwd=tmp_path)
+    assert allowed.returncode == 0, allowed.stderr
+
+
 def test_a_scene_that_is_a_device_ends(oitlab, tmp_path):
     (tmp_path / "x.obj").symlink_to("/dev/zero")
     done = oitlab("scene", "x.obj", cwd=tmp_path)
