@@ -4,6 +4,7 @@
 
 #include "image/hash.h"
 #include "method/method.h"
+#include "util/json_file.h"
 
 namespace oitlab {
 namespace {
@@ -26,7 +27,7 @@ std::string slug(const std::string& text) {
 
 std::string hashOn(const DeviceInfo& device, nlohmann::json identity) {
   identity["device"] = {device.name, device.driver, device.driverInfo};
-  const std::string text = identity.dump();
+  const std::string text = jsonText(identity, -1);  // a driver's name may not be UTF-8
   return imageHash(std::as_bytes(std::span(text)));
 }
 

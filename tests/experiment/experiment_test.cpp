@@ -385,5 +385,13 @@ TEST_F(Experiments, CellIdsTellCellsAndDevicesApart) {
   EXPECT_THAT(cellId(cells[1], a), HasSubstr("boxes-blend-order-sorted-64x32-"));
 }
 
+TEST_F(Experiments, ADeviceWhoseNameIsNotUtf8HasIdsToo) {
+  DeviceInfo device;
+  device.name = "GPU \xff";
+  const CellSpec cell = read("scenes = [\"boxes\"]\nmethods = [\"blend\"]\n").cells.at(0);
+  EXPECT_THAT(cellId(cell, device), HasSubstr("boxes-blend-"));
+  EXPECT_EQ(groupKey(cell, device).size(), 16u);
+}
+
 }  // namespace
 }  // namespace oitlab::testing
