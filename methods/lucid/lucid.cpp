@@ -120,6 +120,8 @@ class Lucid : public Method {
     frontEnd_.addCounters(status.counters);
     status.counters["fragments"] = c.samples;
     status.counters["half_blocks"] = c.triHalfBlocks;
+    // filter_jobs, invalid_pixels and repaired_pixels vary between equal frames, with the order in
+    // which invocations take places in lists (docs/lucid.md).
     status.counters["filter_jobs"] = c.lowLists + c.passedJobs;
     status.counters["long_lists"] = c.highLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
