@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "gpu/abandon.h"
 #include "gpu/device_info.h"
 #include "gpu/pipeline_cache.h"
 #include "gpu/pipeline_statistics.h"
@@ -224,17 +225,20 @@ void Device::submit(const Commands& commands, vk::Fence fence) const {
 }
 
 void Device::wait(vk::Fence fence, double seconds) const {
+  auto result = vk::Result::eSuccess;
   try {
-    const auto result =
-        device_.waitForFences(fence, VK_TRUE, static_cast<std::uint64_t>(seconds * 1e9));
-    if (result == vk::Result::eTimeout)
-      fail<DeviceError>("{} did not finish a frame within {} s", info_.name, seconds);
+    result = device_.waitForFences(fence, VK_TRUE, static_cast<std::uint64_t>(seconds * 1e9));
     // Layers of 1.4 read what shaders printed in a thread of their own, and a fence does not wait
     // for that. The text is lost when the command buffer is used again or destroyed before.
-    if (validation_) queue_.waitIdle();
+    if (validation_ && result != vk::Result::eTimeout) queue_.waitIdle();
   } catch (const vk::SystemError& error) {
-    fail<DeviceError>("{} failed while working: {}", info_.name, error.what());
+    const std::string reason = fmt::format("{} failed while working: {}", info_.name, error.what());
+    if (isLost()) throw DeviceLost(reason);  // or else it is idle now, and its objects may go
+    throw DeviceError(reason);
   }
+  if (result != vk::Result::eTimeout) return;
+  abandon(device_, instance_.vk());
+  fail<DeviceHung>("{} did not finish a frame within {} s", info_.name, seconds);
 }
 
 void Device::runOnce(const std::function<void(const Commands&)>& record) const {

@@ -122,8 +122,8 @@ class Device {
   /// Submits and returns at once. `fence` signals when the device has finished.
   void submit(const Commands& commands, vk::Fence fence) const;
 
-  /// Waits for a fence. Throws DeviceError when it did not signal within `seconds`, or when the
-  /// device is lost.
+  /// Waits for a fence. Throws DeviceLost when the device is lost, DeviceHung when the fence did
+  /// not signal within `seconds`, and DeviceError when waiting failed and the device is idle.
   void wait(vk::Fence fence, double seconds = 600.0) const;
 
   /// Records, submits and waits. For preparation, never inside a measurement.

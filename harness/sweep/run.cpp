@@ -145,6 +145,8 @@ bool Sweep::isThere(const Group& group, const GroupState& state) {
     if (state.cells[i].kind == CellState::failed) failures.push_back(group[i]);
   try {
     if (!stillFail(session(), context_.experiment, failures)) return false;
+  } catch (const DeviceHung&) {
+    session_.reset();  // it failed again; another try would take as long
   } catch (const DeviceLost&) {
     session_.reset();
     return false;  // measure() deals with losses
@@ -164,6 +166,9 @@ void Sweep::measure(const Group& group, GroupClaim& claim) {
     std::string lost;
     try {
       measureGroup(session(), rows);
+    } catch (const DeviceHung& error) {
+      lost = error.what();  // another try would take as long
+      losses = mostLosses - 1;
     } catch (const DeviceLost& error) {
       lost = error.what();
     } catch (const DeviceError& error) {
@@ -176,8 +181,9 @@ void Sweep::measure(const Group& group, GroupClaim& claim) {
         progress_.say(fmt::format("the device was lost ({}): it is opened anew", lost));
         continue;
       }
-      rows.failRest(fmt::format("the device was lost {} times in a row, or cannot be opened: {}",
-                                mostLosses, lost));
+      rows.failRest(
+          fmt::format("the device hangs, cannot be opened, or was lost {} times in a row: {}",
+                      mostLosses, lost));
     }
     outcome = rows.outcome();
     break;

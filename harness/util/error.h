@@ -26,6 +26,12 @@ struct DeviceLost : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// The device did not finish its work in time, and nobody knows whether it ever will. It is
+/// abandoned (gpu/abandon.h).
+struct DeviceHung : DeviceLost {
+  using DeviceLost::DeviceLost;
+};
+
 /// Results cannot be written: the disk is full, the folder is gone or read-only. No input mends it,
 /// and there is no point in measuring on: the program ends with exit code 4.
 struct OutputError : std::runtime_error {

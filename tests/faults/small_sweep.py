@@ -45,8 +45,8 @@ class Sweep:
         return [str(self.program), "run", str(self.experiment), "--results", str(self.results),
                 "--profile", "full"]
 
-    def run(self, **environment):
-        return subprocess.run(self.command, capture_output=True, text=True, timeout=300,
+    def run(self, *options, **environment):
+        return subprocess.run([*self.command, *options], capture_output=True, text=True, timeout=300,
                               cwd=self.folder, env={**os.environ, **environment})
 
     def cells(self):

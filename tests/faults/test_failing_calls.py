@@ -108,6 +108,25 @@ def test_a_device_lost_again_and_again_ends_with_rows(sweep, undisturbed):
     assert failed == len(undisturbed)
 
 
+def test_after_a_frame_that_does_not_end_nothing_is_destroyed_that_it_uses(sweep, undisturbed, counts):
+    """The validation layer is behind ours: it sees no wait, and would report what is destroyed."""
+    call = counts["vkWaitForFences"] // 4
+    done = sweep.run("--validation", **layer(sweep.folder, f"vkWaitForFences:{call}:timeout"))
+    if "VK_LAYER_KHRONOS_validation is not installed" in done.stderr:
+        pytest.skip("no validation layer here")
+    assert done.returncode == 1 and "validation:" not in done.stderr, done.stderr
+    cells = sweep.cells()
+    assert cells.keys() == undisturbed.keys()
+    failed = [cell for cell in cells.values() if cell["status"] != "ok"]
+    assert len(failed) == len(cells) // 2 and len({cell["scene"]["name"] for cell in failed}) == 1
+    for cell in cells.values():
+        if cell["status"] == "ok":
+            assert_right(cell, undisturbed[cell["id"]])
+        else:
+            assert "did not finish a frame within 600 s" in cell["reason"]
+    mend(sweep, undisturbed)
+
+
 def numbers(count):
     """All of few calls; of many, the first and the last and more than a hundred between them."""
     return range(1, count + 1) if count <= 150 else sorted(

@@ -6,9 +6,9 @@
 //   OITLAB_FAULT_CALLS=FILE          at the end of the process FILE gets lines "FUNCTION CALLS",
 //                                    and "fault: yes" or "fault: no": whether there was one
 //
-// RESULT: out_of_host_memory, out_of_device_memory, initialization_failed, device_lost. A lost
-// device stays lost: submissions, waits and queries of it fail from then on, until another is
-// opened.
+// RESULT: out_of_host_memory, out_of_device_memory, initialization_failed, device_lost, timeout. A
+// lost device stays lost: submissions, waits and queries of it fail from then on, until another is
+// opened. After a timeout (of vkWaitForFences) the driver still works on the frame.
 #include <array>
 #include <atomic>
 #include <charconv>
@@ -46,7 +46,8 @@ VkResult resultOf(const std::string& name, const std::string& whole) {
       {"out_of_host_memory", VK_ERROR_OUT_OF_HOST_MEMORY},
       {"out_of_device_memory", VK_ERROR_OUT_OF_DEVICE_MEMORY},
       {"initialization_failed", VK_ERROR_INITIALIZATION_FAILED},
-      {"device_lost", VK_ERROR_DEVICE_LOST}};
+      {"device_lost", VK_ERROR_DEVICE_LOST},
+      {"timeout", VK_TIMEOUT}};
   const auto found = results.find(name);
   if (found == results.end()) refuse(whole);
   return found->second;
