@@ -176,6 +176,13 @@ Device::~Device() {
   }
 }
 
+std::string Device::uuid() const {
+  const auto found =
+      physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+  const auto& bytes = found.get<vk::PhysicalDeviceIDProperties>().deviceUUID;
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
+}
+
 bool Device::isLost() const {
   try {
     device_.waitIdle();

@@ -75,6 +75,8 @@ class Device {
   static std::vector<std::string> missingBaseline(const DeviceInfo& info);
 
   const DeviceInfo& info() const { return info_; }
+  /// What tells the device from all others of the machine: 32 hexadecimal digits.
+  std::string uuid() const;
   const vk::raii::Device& vk() const { return device_; }
   ShaderLibrary& shaders() const { return *shaders_; }
 

@@ -6,6 +6,7 @@
 
 #include "image/hash.h"
 #include "results/results_folder.h"
+#include "sweep/device_claim.h"
 #include "sweep/group.h"
 #include "util/error.h"
 #include "util/interrupt.h"
@@ -49,6 +50,7 @@ class Sweep {
   /// Whether nothing is to be measured of the group: it is there, or what failed fails again.
   bool isThere(const Group& group, const GroupState& state);
   void measure(const Group& group, GroupClaim& claim);
+  void warnOfOthers();
   void waitFor(std::vector<Group> held);
   bool isOver() const;
   Session& session();
@@ -59,6 +61,8 @@ class Sweep {
   std::vector<Group> groups_;
   SweepProgress progress_;
   std::unique_ptr<Session> session_;
+  std::optional<DeviceClaim> device_;
+  bool warnedOfOthers_ = false;
   std::string holder_;  ///< of the last group that another process held
   const Clock::time_point start_;
 };
@@ -134,6 +138,7 @@ bool Sweep::attempt(const Group& group) {
     progress_.say(
         fmt::format("measured again, with all {} cells of its group: {}", group.size(), why));
   progress_.begin(group);
+  warnOfOthers();
   if (!isThere(group, state)) measure(group, *claim);
   return true;
 }
@@ -157,6 +162,16 @@ bool Sweep::isThere(const Group& group, const GroupState& state) {
   summary.present += group.size() - failures.size();
   progress_.end(false);
   return true;
+}
+
+void Sweep::warnOfOthers() {
+  if (!device_) device_.emplace(session().device.uuid());
+  // Asked before each group: the process that has it may end, and a third one may come.
+  if (device_->take() || warnedOfOthers_) return;
+  progress_.say(fmt::format(
+      "another process measures on {} too: the times of both are worth nothing while both run",
+      context_.device.name));
+  warnedOfOthers_ = true;
 }
 
 void Sweep::measure(const Group& group, GroupClaim& claim) {

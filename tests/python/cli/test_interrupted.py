@@ -65,6 +65,7 @@ def test_two_runs_fill_one_folder_and_measure_everything_once(oitlab, toml, resu
     assert all(count[0] > 0 for count in counts), "they share the work"
     assert set(baselines(results).values()) == {(1, 3)}
     assert len({cell["run"] for cell in cells(results).values()}) == 2
+    assert any("another process measures on" in text for text in said), "and say that they disturb each other"
 
 
 @pytest.mark.parametrize(("name", "code"), [("SIGINT", 130), ("SIGTERM", 143)])
