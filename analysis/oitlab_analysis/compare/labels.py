@@ -61,13 +61,17 @@ def short_labels(table: pandas.DataFrame) -> tuple[dict[str, str], str]:
     """
     variants = table.drop_duplicates("label")
     varying = varying_parameters(variants)
+    by_method: dict[str, list[dict]] = {}
+    # All at once, and only the columns that count: there may be thousands of methods.
+    for row in records(variants[["method", "label", *(c for c in variants if c.startswith("param."))]]):
+        by_method.setdefault(row["method"], []).append(row)
     names: dict[str, str] = {}
     usual: dict[str, str] = {}
-    for method, cells in variants.groupby("method", sort=False):
+    for method, rows in by_method.items():
         texts = [{name: parameter(value) for name, value in parameters_of(row).items() if name in varying[method]}
-                 for row in records(cells)]
+                 for row in rows]
         most = _held_by_most(texts)
-        labels = cells["label"].tolist()
+        labels = [row["label"] for row in rows]
         short = [_name(method, {k: v for k, v in own.items() if most.get(k) != v}, label)
                  for own, label in zip(texts, labels)]
         if len(set(short)) < len(short):  # a variant that lacks a parameter that others have

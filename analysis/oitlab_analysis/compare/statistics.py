@@ -192,13 +192,12 @@ def choose_baseline(cells: dict[str, dict], source: str = HARDWARE) -> str:
     for cell in cells.values():
         runs.setdefault(cell["group"], []).append(cell)
 
-    def rank(key: str) -> tuple:
-        cell, run = cells[key], runs[cells[key]["group"]]
-        newest = max(other["provenance"].get("date") or "" for other in run)
-        return len(run), newest, cell["group"]
+    def rank(group: str) -> tuple:
+        run = runs[group]
+        return len(run), max(cell["provenance"].get("date") or "" for cell in run), group
 
     candidates = blends or list(cells)
-    group = cells[max(candidates, key=rank)]["group"]
+    group = max({cells[key]["group"] for key in candidates}, key=rank)
     return min((key for key in candidates if cells[key]["group"] == group),
                key=lambda key: (cells[key]["parameters"].get("order", "submission") != "submission",
                                 cells[key]["statistics"]["frame"]["median"], key))

@@ -24,6 +24,9 @@ PER_SECTION = 6
 IN_ALL = 18
 MOST_SECTIONS = 18  # with a chart: a report of more sections is a list of tables
 FEW_CHARTS = 4
+# Of a section with charts: nobody can tell more apart, and laying them out takes time that grows with the
+# square of their number.
+MOST_METHODS, MOST_VARIANTS = 100, 2000
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,17 @@ def kinds_with(asked: tuple[Curve, ...]) -> dict[str, Kind]:
     return kinds | KINDS
 
 
+def _is_crowded(section: Section) -> bool:
+    return section.table["method"].nunique() > MOST_METHODS or section.table["label"].nunique() > MOST_VARIANTS
+
+
+def crowded_notes(sections: list[Section]) -> list[str]:
+    """What is said of sections that have too much for charts."""
+    count = sum(map(_is_crowded, sections))
+    whose = "a section" if count == 1 else f"{count} sections"
+    return [f"No charts of {whose} with more than {MOST_METHODS} methods or {MOST_VARIANTS} variants."] if count else []
+
+
 def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> list[list[Task]]:
     """Every chart that each section could have, in the order of their worth: the first of each kind,
     then the second ones."""
@@ -108,7 +122,7 @@ def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> 
     found = []
     for number, section in enumerate(sections, 1):
         own = []
-        if (section.table["status"] == "ok").any():
+        if (section.table["status"] == "ok").any() and not _is_crowded(section):
             for name, kind in kinds.items():
                 count = kind.pages(section, metric)
                 own += [Task(section, number, name, kind, page, count) for page in range(count)]

@@ -17,7 +17,7 @@ from ..compare.sections import Section, baselines_of
 from ..compare.special_values import Special
 from ..compare.statistics import Comparison, compare_cells
 from .curve_lines import MOST_DASHES, Curve, Line, panels_of, place_of
-from .layout import LEFT, linear_label, log_axis, mark_beyond, panel_grid, robust_limit
+from .layout import LEFT, linear_label, log_axis, mark_beyond, panel_grid, robust_limit, shortened
 from .quality_speed import error_floor, set_error_axis
 from .style import DASHES, series_look
 from .x_axis import XAxis
@@ -186,9 +186,5 @@ def _handles(looks: dict[tuple[str, str], dict]) -> list[Line2D]:
     names = {pair: ", ".join(part for part in pair if part) for pair in looks}
     if len(names) == 1:
         return []
-    handles = [Line2D([], [], markersize=3.5, linewidth=1, label=name or "–", **looks[pair])
-               for pair, name in names.items()]
-    if len(handles) <= MOST_HANDLES:
-        return handles
-    more = Line2D([], [], linestyle="none", label=f"and {len(handles) - MOST_HANDLES + 1} more")
-    return [*handles[:MOST_HANDLES - 1], more]
+    return shortened([Line2D([], [], markersize=3.5, linewidth=1, label=name or "–", **looks[pair])
+                      for pair, name in names.items()], MOST_HANDLES)

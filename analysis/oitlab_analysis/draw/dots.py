@@ -29,6 +29,7 @@ from .layout import (
     mark_beyond,
     plain,
     robust_limit,
+    shortened,
 )
 from .quality_speed import MOST_VARIANTS_NAMED, looks_of
 from .style import GRID, PAGE, TALLEST
@@ -187,5 +188,6 @@ def _handles(shown: set[str], looks: dict, names: dict[str, str]) -> list[Line2D
             entries |= own if len(own) <= most else {f"{method} ({len(own)} variants)": next(iter(own.values()))}
         if legend_height(list(entries), PAGE) <= MOST_LEGEND:
             break
-    return [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
-                   markeredgecolor="black", markeredgewidth=0.35, label=label) for label, look in entries.items()]
+    return shortened([Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+                             markeredgecolor="black", markeredgewidth=0.35, label=label)
+                      for label, look in entries.items()])

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 
@@ -25,6 +26,7 @@ TITLE_SIZE = 8
 CHARACTER = 0.6  # of the font size: the mean width of a character of DejaVu Sans
 LEGEND_CHARACTERS = 46  # two columns of the page
 MOST_TITLE_LINES = 3
+MOST_ENTRIES = 60  # of a legend: more would leave no room for panels
 MOST_LABELS = 60  # points of one panel that a label is tried for
 HALO = [withStroke(linewidth=1.6, foreground="white")]  # a text over a line stays legible
 
@@ -73,6 +75,13 @@ def _common_words(names: list[str]) -> int:
         if letters[0] == " ":
             common = i + 1
     return common
+
+
+def shortened(handles: list, most: int = MOST_ENTRIES) -> list:
+    """The entries of a legend; of too many the first, and how many more there are."""
+    if len(handles) <= most:
+        return handles
+    return [*handles[:most - 1], Line2D([], [], linestyle="none", label=f"and {len(handles) - most + 1} more")]
 
 
 def legend_columns(labels: Sequence[str], width: float, size: float = 7) -> int:

@@ -18,7 +18,7 @@ from ..compare.device_notes import NOTED
 from ..compare.labels import short_labels
 from ..compare.metrics import METRICS, Metric
 from ..compare.sections import Section
-from .layout import log_axis, mark_beyond, panel_grid, place_labels, robust_limit, wrap_label
+from .layout import log_axis, mark_beyond, panel_grid, place_labels, robust_limit, shortened, wrap_label
 from .style import MARKERS, mark_point, method_looks
 
 PANELS_PER_CHART = 12
@@ -284,4 +284,4 @@ def _handles(table: pandas.DataFrame, looks: dict, names: dict[str, str]) -> lis
         handles += [Line2D([], [], linestyle="none", marker=look["marker"], color=look["color"],
                            markersize=5, markeredgecolor="black", markeredgewidth=0.4, label=label)
                     for label, look in own.items()]
-    return [*handles, Line2D([], [], **FRONT, label="Pareto front")]
+    return [*shortened(handles), Line2D([], [], **FRONT, label="Pareto front")]

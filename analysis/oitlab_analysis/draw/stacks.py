@@ -27,6 +27,7 @@ from .layout import (
     panel_titles,
     plain,
     robust_limit,
+    shortened,
     wrap_label,
 )
 from .style import COLOURS, GRID, HATCHES, PAGE, TALLEST
@@ -209,8 +210,8 @@ def _draw(settings: list[tuple[str, pandas.DataFrame]], styles: dict[str, tuple[
     """One panel for each setting with an axis of its own, so that a fast scene is not lost."""
     styles = {c: style for c, style in styles.items() if any(c in cells and (cells[c] > 0).any()
                                                              for _, cells in settings)}
-    handles = [Patch(facecolor=colour, hatch=hatch, edgecolor="black", linewidth=0.4, label=names[c])
-               for c, (colour, hatch) in styles.items()] + ([mark] if mark else [])
+    handles = shortened([Patch(facecolor=colour, hatch=hatch, edgecolor="black", linewidth=0.4, label=names[c])
+                         for c, (colour, hatch) in styles.items()]) + ([mark] if mark else [])
     legend = legend_height([handle.get_label() for handle in handles], PAGE)
     titles = panel_titles([name for name, _ in settings], characters(PAGE - NAMES, TITLE_SIZE))
     heads = [(title.count("\n") + 1) * TITLE_LINE + 0.08 if title else 0.06 for title in titles]

@@ -12,7 +12,7 @@ import pandas
 from ..compare.clock import clock_summary
 from ..compare.sections import add_comparisons, make_sections, mixture_warnings
 from ..compare.tidy import as_table
-from ..draw.charts import save_charts
+from ..draw.charts import crowded_notes, save_charts
 from ..draw.curve_lines import Curve, check
 from ..read.cells import collect, left_out
 from .contents import Report, command_of, summary
@@ -51,6 +51,7 @@ def make_report(paths: list[Path], out: Path | None = None, metric: str = "rmse"
     if collection.repeated:
         notes.append("1 cell was given twice, and counts once." if collection.repeated == 1 else
                      f"{collection.repeated} cells were given twice, and count once.")
+    notes += crowded_notes(sections)
     folder, command = out or own_folder(paths), command_of(paths, out)
     charts, more = [[] for _ in sections], ""
     if folder:
