@@ -93,7 +93,7 @@ std::vector<int> readTextures(const GltfFile& file, Scene& scene) {
   for (const tinygltf::Material& material : file.model.materials)
     if (const int image = imageOf(file.model, material); image >= 0) used.push_back(image);
   std::ranges::sort(used);
-  used.erase(std::ranges::unique(used).begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
 
   for (const std::size_t image : used)
     file.budget.addTexels(countTexels(encodedImage(file, images[image])),
