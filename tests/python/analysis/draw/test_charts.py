@@ -37,6 +37,16 @@ def test_one_section_has_at_most_its_budget(tmp_path):
     assert len({task.name for task in chosen}) == charts.PER_SECTION, "the first of each kind before second ones"
 
 
+def test_a_section_of_too_many_methods_has_no_charts_and_says_so(tmp_path):
+    for number in range(charts.MOST_METHODS + 1):
+        write_cell(tmp_path, make_cell(method=f"m{number}", blocks=7, frames=1), image=False)
+    sections = sections_of(tmp_path)
+    assert charts.tasks_of(sections, "rmse", ()) == [[]]
+    assert charts.crowded_notes(sections) == ["No charts of a section with more than 100 methods or 2000 variants."]
+    (tmp_path / "cells" / f"{sections[0].table['id'].iloc[0]}.json").unlink()
+    assert charts.crowded_notes(sections_of(tmp_path)) == []
+
+
 def test_figures_of_a_paper_are_drawn_for_its_experiment_only(tmp_path):
     counters = {"pixels_8": 100, "pixels_16": 20, "fragments": 900}
     for experiment, wanted in (("bma", True), ("methods", False)):

@@ -14,6 +14,7 @@ from oitlab_analysis.draw.layout import (
     place_labels,
     plain,
     robust_limit,
+    shortened,
     wrap_label,
 )
 from oitlab_analysis.draw.style import COLOURS, TALLEST, method_looks, series_look
@@ -143,3 +144,11 @@ def test_long_entries_of_a_legend_wrap_and_fit_below_its_height():
     height = legend.get_window_extent().height / figure.dpi
     assert legend._ncols == 2 and "\n" in legend.get_texts()[0].get_text()
     assert height <= legend_height([handle.get_label() for handle in handles], 7.0) < 1.2 * height + 0.08
+
+
+def test_a_legend_of_very_many_entries_names_the_first_and_counts_the_others():
+    handles = [Line2D([], [], label=f"method{i}") for i in range(5000)]
+    assert [handle.get_label() for handle in shortened(handles, 3)] == ["method0", "method1", "and 4998 more"]
+    assert shortened(handles[:3], 3) == handles[:3]
+    _, axes = panel_grid(["one"], 1, 3.2, shortened(handles))  # it used to leave less than no height
+    assert axes[0].get_position().height > 0.2
