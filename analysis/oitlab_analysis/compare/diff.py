@@ -153,20 +153,24 @@ Blends = dict[str, dict[str, dict]]  # group -> key -> the measured blend cell
 
 
 def blends_of(cells: dict[str, dict]) -> Blends:
+    """In each group those from the hardware and in submission order first: a pack may have thousands."""
+    def rank(item: tuple[str, dict]) -> tuple:
+        key, cell = item
+        return source_of(cell) != HARDWARE, cell["parameters"].get("order") != "submission", key
+
     found: Blends = {}
-    for key, cell in cells.items():
-        if cell["method"] == "blend" and cell["status"] == "ok":
-            found.setdefault(cell["group"], {})[key] = cell
+    blends = [(key, cell) for key, cell in cells.items() if cell["method"] == "blend" and cell["status"] == "ok"]
+    for key, cell in sorted(blends, key=rank):
+        found.setdefault(cell["group"], {})[key] = cell
     return found
 
 
 def _blends(before: dict, after: dict, blends: tuple[Blends, Blends]) -> tuple[dict, dict] | None:
-    """The same blend cell of A and of B, each measured in turn with its cell; from the hardware and in
-    submission order if there are several."""
+    """The same blend cell of A and of B, each measured in turn with its cell: the first of those that
+    blends_of() gives."""
     found = [own.get(cell["group"], {}) for cell, own in zip((before, after), blends)]
-    common = sorted((source_of(c) != HARDWARE, c["parameters"].get("order") != "submission", key)
-                    for key, c in found[0].items() if key in found[1])
-    return (found[0][common[0][-1]], found[1][common[0][-1]]) if common else None
+    key = next((key for key in found[0] if key in found[1]), None)
+    return None if key is None else (found[0][key], found[1][key])
 
 
 def _over_blend(cell: dict, blend: dict) -> list[float]:

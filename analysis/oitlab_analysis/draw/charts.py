@@ -26,7 +26,7 @@ MOST_SECTIONS = 18  # with a chart: a report of more sections is a list of table
 FEW_CHARTS = 4
 # Of a section with charts: nobody can tell more apart, and laying them out takes time that grows with the
 # square of their number.
-MOST_METHODS, MOST_VARIANTS = 100, 2000
+MOST_METHODS, MOST_CELLS = 100, 3000
 
 
 @dataclass(frozen=True)
@@ -105,14 +105,14 @@ def kinds_with(asked: tuple[Curve, ...]) -> dict[str, Kind]:
 
 
 def _is_crowded(section: Section) -> bool:
-    return section.table["method"].nunique() > MOST_METHODS or section.table["label"].nunique() > MOST_VARIANTS
+    return section.table["method"].nunique() > MOST_METHODS or len(section.table) > MOST_CELLS
 
 
 def crowded_notes(sections: list[Section]) -> list[str]:
     """What is said of sections that have too much for charts."""
     count = sum(map(_is_crowded, sections))
     whose = "a section" if count == 1 else f"{count} sections"
-    return [f"No charts of {whose} with more than {MOST_METHODS} methods or {MOST_VARIANTS} variants."] if count else []
+    return [f"No charts of {whose} with more than {MOST_METHODS} methods or {MOST_CELLS} cells."] if count else []
 
 
 def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> list[list[Task]]:

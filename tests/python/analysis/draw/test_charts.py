@@ -42,7 +42,7 @@ def test_a_section_of_too_many_methods_has_no_charts_and_says_so(tmp_path):
         write_cell(tmp_path, make_cell(method=f"m{number}", blocks=7, frames=1), image=False)
     sections = sections_of(tmp_path)
     assert charts.tasks_of(sections, "rmse", ()) == [[]]
-    assert charts.crowded_notes(sections) == ["No charts of a section with more than 100 methods or 2000 variants."]
+    assert charts.crowded_notes(sections) == ["No charts of a section with more than 100 methods or 3000 cells."]
     (tmp_path / "cells" / f"{sections[0].table['id'].iloc[0]}.json").unlink()
     assert charts.crowded_notes(sections_of(tmp_path)) == []
 
