@@ -46,7 +46,9 @@ class Sweep:
                 "--profile", "full"]
 
     def run(self, *options, **environment):
-        return subprocess.run([*self.command, *options], capture_output=True, text=True, timeout=300,
+        # A run takes seconds. With four other processes on a busy machine of two cores, and nothing in the
+        # driver's cache, one took more than five minutes.
+        return subprocess.run([*self.command, *options], capture_output=True, text=True, timeout=1800,
                               cwd=self.folder, env={**os.environ, **environment})
 
     def cells(self):
