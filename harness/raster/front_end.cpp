@@ -37,12 +37,12 @@ FrontEnd::FrontEnd(const Device& device, const GpuScene& scene, const Target& ta
       binColumns_(divideUp(target.width(), std::uint32_t(BIN_SIZE))),
       binRows_(divideUp(target.height(), std::uint32_t(BIN_SIZE))),
       zeroFill_(device),
-      project_(Pipeline::compute(device, "raster/project.comp")),
-      setup_(Pipeline::compute(device, "raster/setup.comp", {{"HAS_UNSNAPPED", "0"}})),
-      countLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "1"}})),
-      offsets_(Pipeline::compute(device, "raster/bin_offsets.comp")),
-      writeSmall_(Pipeline::compute(device, "raster/bin_small.comp")),
-      writeLarge_(Pipeline::compute(device, "raster/bin_large.comp", {{"COUNT", "0"}})) {
+      project_(Pipeline::compute(device, "raster/binning/project.comp")),
+      setup_(Pipeline::compute(device, "raster/binning/setup.comp", {{"HAS_UNSNAPPED", "0"}})),
+      countLarge_(Pipeline::compute(device, "raster/binning/bin_large.comp", {{"COUNT", "1"}})),
+      offsets_(Pipeline::compute(device, "raster/binning/bin_offsets.comp")),
+      writeSmall_(Pipeline::compute(device, "raster/binning/bin_small.comp")),
+      writeLarge_(Pipeline::compute(device, "raster/binning/bin_large.comp", {{"COUNT", "0"}})) {
   makeQuads(scene);
   bins_ = Buffer(device, memory, "bins", std::uint64_t(bins()) * sizeof(Bin));
   counters_ = CountersBuffer(device, memory, "raster counters", sizeof(RasterCounters));
@@ -191,7 +191,7 @@ bool FrontEnd::grow() {
   bool lacked = false;
   if (c.unsnappedSeen != 0) {
     unsnappedSeen_ = lacked = true;
-    setup_ = Pipeline::compute(device_, "raster/setup.comp", {{"HAS_UNSNAPPED", "1"}});
+    setup_ = Pipeline::compute(device_, "raster/binning/setup.comp", {{"HAS_UNSNAPPED", "1"}});
   }
   if (c.largeTriangles > 0 && !largeSeen_) largeSeen_ = lacked = true;
   if (c.ready != 0) return lacked;

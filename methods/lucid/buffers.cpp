@@ -6,34 +6,8 @@
 
 namespace oitlab::lucid {
 
-Buffers::Buffers(const Device& device, MemoryLedger& memory, std::uint64_t halfBlocks)
-    : blocks(device, memory, "half-blocks", halfBlocks * sizeof(HalfBlock)),
-      filterJobs(device, memory, "depth filter jobs", halfBlocks * sizeof(PixelJob)),
-      binBlocks(device, memory, "half-blocks of high bins", halfBlocks * sizeof(BinBlock)),
-      counters(device, memory, "lucid counters", sizeof(LucidCounters)),
-      device_(device),
-      memory_(memory) {
-  // First guesses; the first frame tells.
-  makeRoomForLists(halfBlocks, 1024);
-  makeRoomForRepairs(1024);
-}
-
-void Buffers::makeRoomForSegments(std::uint64_t segments) {
-  segmentLists = Buffer();
-  segmentLists = Buffer(device_, memory_, "lists of segments", segments * sizeof(SegmentLists));
-}
-
-void Buffers::makeRoomForLists(std::uint64_t triHalfBlocks, std::uint64_t cached) {
-  if (triHalfBlocks >= ~0u)
-    fail<DeviceError>("lucid: {} tri-half-blocks are more than 32 bits can name", triHalfBlocks);
-  triHalfBlocks += triHalfBlocks % 2;
-  list = Buffer();  // give the old ones back first: both may not fit
-  keys = Buffer();
-  list = Buffer(device_, memory_, "tri-half-blocks",
-                triHalfBlocks * sizeof(TriHalfBlock) + cached * sizeof(glm::uvec4));
-  keys = Buffer(device_, memory_, "depth keys", triHalfBlocks * sizeof(std::uint32_t));
-  listCapacity = std::uint32_t(triHalfBlocks);
-  cachedCapacity = std::uint32_t(cached);
+Buffers::Buffers(const Device& device, MemoryLedger& memory) : device_(device), memory_(memory) {
+  makeRoomForRepairs(1024);  // a first guess; the first frame tells
 }
 
 void Buffers::makeRoomForRepairs(std::uint64_t jobs) {
@@ -54,16 +28,8 @@ void Buffers::makeRoomForDeep(std::uint64_t pixels, std::uint64_t fragments) {
   nodeCapacity = std::uint32_t(fragments);
 }
 
-std::uint64_t Buffers::scratchBytes() const {
-  std::uint64_t bytes = 0;
-  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &segmentLists})
-    bytes += buffer->bytes();
-  return bytes;
-}
-
 void Buffers::poison(const Commands& commands, std::uint32_t pattern) const {
-  for (const Buffer* buffer : {&list, &keys, &blocks, &filterJobs, &binBlocks, &segmentLists,
-                               &repairs, &counters.buffer(), &deepPixels, &nodes})
+  for (const Buffer* buffer : {&repairs, &deepPixels, &nodes})
     if (*buffer) fillBuffer(commands, *buffer, pattern);
 }
 

@@ -1,6 +1,6 @@
-// LucidRaster (Jakubowski 2024): a software rasterizer in compute shaders with exact OIT. The front
-// end (raster/front_end.h) bins the triangles; here they become tri-half-blocks, sorted lists of
-// these, fragments, and a blended image. Where the paper's two-stage sort goes wrong, the pixel is
+// LucidRaster (Jakubowski 2024): a software rasterizer in compute shaders with exact OIT. The
+// harness makes the lists of tri-half-blocks (raster/block_lists.h); here they are sorted, and
+// become fragments and a blended image. Where the paper's two-stage sort goes wrong, the pixel is
 // blended again in exact order.
 //
 //   programs  the shaders, for one device and scene
@@ -10,7 +10,8 @@
 #include "lucid/buffers.h"
 #include "lucid/programs.h"
 #include "method/method.h"
-#include "raster/front_end.h"
+#include "raster/block_lists.h"
+#include "raster/raster_defines.h"
 #include "util/error.h"
 #include "util/rounding.h"
 
@@ -36,34 +37,31 @@ class Lucid : public Method {
         scene_(context.scene),
         targetFormat_(formatName(context.target.format())),
         parameters_(context.parameters),
-        frontEnd_(device_, scene_, context.target, context.memory,
-                  {.backFaceCulling = parameters_.flag("backface_culling")}),
-        buffers_(device_, context.memory, std::uint64_t(frontEnd_.bins()) * HALF_BLOCKS),
-        programs_(makePrograms(false)) {
-    makeRoomForSegments();
-  }
+        lists_(device_, scene_, context.target, context.memory, listOptions()),
+        buffers_(device_, context.memory),
+        programs_(makePrograms(false)) {}
 
   bool finishesTarget() const override { return true; }
 
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);
-    frontEnd_.record(frame, {&buffers_.counters.buffer(), &buffers_.binBlocks});
-    const raster::RasterPush front = frontEnd_.addresses(frame);
+    lists_.record(frame);
     const auto compute = Stage::eComputeShader;
-    frame.stage("blocks", [&] { recordBlocks(frame, front); });
-    const BlendPush push = pushOf(frame, front);
+    const BlendPush push = pushOf(frame);
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
-      dispatchCounted(frame, pipeline, push, buffers_.counters.vk(), offset);
+      dispatchCounted(frame, pipeline, push, lists_.counters().vk(), offset);
     };
     // The programs of one step need no barrier between them: they work on different half-blocks.
     // Long lists come first, since the frame waits for the last job to end.
-    const auto high = offsetof(LucidCounters, high), low = offsetof(LucidCounters, low);
+    const auto high = offsetof(LucidCounters, lists.longGroups);
+    const auto low = offsetof(LucidCounters, lists.mediumGroups);
     frame.stage("sort", [&] {
       if (needed_.longLists) run(*programs_.sortHigh, high);
       if (needed_.filter) run(*programs_.sortLow, low);
     });
     frame.stage("low_raster", [&] {
-      if (programs_.ordersFirst) run(*programs_.ordered, offsetof(LucidCounters, ordered));
+      if (programs_.ordersFirst)
+        run(*programs_.ordered, offsetof(LucidCounters, lists.shortGroups));
       if (needed_.filter || needed_.longLists)
         frame.barrier(compute, compute | Stage::eDrawIndirect);
       if (needed_.filter) run(*programs_.lowRaster, low);
@@ -74,21 +72,14 @@ class Lucid : public Method {
     frame.stage("repair", [&] {
       if (needed_.repair) recordRepair(frame, push);
     });
-    recordReadback(frame.commands, {&frontEnd_.counters(), &buffers_.counters});
+    lists_.readBack(frame);
   }
 
   Status status() override {
-    const LucidCounters& c = buffers_.counters.read<LucidCounters>();
+    const LucidCounters& c = lists_.counters().read<LucidCounters>();
     bool again = findNeeded(c);
-    if (frontEnd_.grow()) {
-      makeRoomForSegments();
-      if (frontEnd_.hasUnsnapped() && !programs_.unsnapped) programs_ = makePrograms(true);
-      return {.recordAgain = true};
-    }
-    if (c.triHalfBlocks > buffers_.listCapacity || c.cached > buffers_.cachedCapacity) {
-      const std::uint64_t list = buffers_.listCapacity, cached = buffers_.cachedCapacity;
-      buffers_.makeRoomForLists(c.triHalfBlocks > list ? withSlack(c.triHalfBlocks) : list,
-                                c.cached > cached ? withSlack(c.cached) : cached);
+    if (lists_.grow()) {
+      if (lists_.frontEnd().hasUnsnapped() && !programs_.unsnapped) programs_ = makePrograms(true);
       return {.recordAgain = true};
     }
     if (c.repairJobs > buffers_.repairCapacity) {
@@ -103,8 +94,8 @@ class Lucid : public Method {
       again = true;
     }
     if (again) return {.recordAgain = true};
-    const std::uint32_t toBlend = c.triHalfBlocks + c.passedOn;
-    const bool blended = !verifiesLoops(device_) || c.blended == toBlend;
+    const std::uint32_t toBlend = c.lists.triHalfBlocks + c.passedOn;
+    const bool blended = !raster::verifiesLoops(device_) || c.blended == toBlend;
     if (c.walked != c.expected || !blended)
       fail<DeviceError>(
           "lucid: {} of {} list entries and {} of {} tri-half-blocks were gone through: {} ends "
@@ -117,38 +108,46 @@ class Lucid : public Method {
       fail<DeviceError>("lucid: of {} fragments in deep pixels {} were captured and {} blended",
                         c.deepNodes, c.deepCaptured, c.deepBlended);
     Status status;
-    frontEnd_.addCounters(status.counters);
+    lists_.frontEnd().addCounters(status.counters);
     status.counters["fragments"] = c.samples;
-    status.counters["half_blocks"] = c.triHalfBlocks;
+    status.counters["half_blocks"] = c.lists.triHalfBlocks;
     // filter_jobs, invalid_pixels and repaired_pixels vary between equal frames, with the order in
     // which invocations take places in lists (docs/lucid.md).
-    status.counters["filter_jobs"] = c.lowLists + c.passedJobs;
-    status.counters["long_lists"] = c.highLists;
+    status.counters["filter_jobs"] = c.lists.mediumLists + c.passedJobs;
+    status.counters["long_lists"] = c.lists.longLists;
     status.counters["invalid_pixels"] = c.invalidPixels;
     status.counters["repaired_pixels"] = c.repairedPixels;
-    status.counters["scratch_bytes"] = buffers_.scratchBytes();
+    status.counters["scratch_bytes"] = lists_.scratchBytes();
     return status;
   }
 
  private:
   Programs makePrograms(bool hasUnsnapped) const {
-    return {device_,      scene_.scene(), scene_.opaqueCount() > 0,
-            hasUnsnapped, targetFormat_,  parameters_};
+    return {device_, scene_, hasUnsnapped, targetFormat_, parameters_};
+  }
+
+  raster::BlockLists::Options listOptions() const {
+    const Teams teams(device_);
+    return {.backFaceCulling = parameters_.flag("backface_culling"),
+            .longestShort = parameters_.flag("ordered_first") ? SHORT_LIST : 0u,
+            .key = KEY_DEPTH,
+            .shortTeams = teams.ordered,
+            .mediumTeams = teams.low,
+            .counterBytes = sizeof(LucidCounters)};
   }
 
   // Passes that a frame needs: those that none has needed so far are not recorded, since each costs
   // a GPU some microseconds that has nothing to do.
   struct Needed {
-    bool highBins = false, longLists = false, filter = false, repair = false;
+    bool longLists = false, filter = false, repair = false;
     bool operator==(const Needed&) const = default;
   };
 
   // Whether the last frame lacked a pass.
   bool findNeeded(const LucidCounters& c) {
     const Needed before = needed_;
-    needed_.highBins = needed_.highBins || frontEnd_.counted().highSegments > 0;
-    needed_.longLists = needed_.longLists || c.highLists > 0;
-    needed_.filter = needed_.filter || c.lowLists + c.passedJobs > 0;
+    needed_.longLists = needed_.longLists || c.lists.longLists > 0;
+    needed_.filter = needed_.filter || c.lists.mediumLists + c.passedJobs > 0;
     needed_.repair = needed_.repair || c.repairJobs > 0;
     return needed_ != before;
   }
@@ -157,48 +156,21 @@ class Lucid : public Method {
     return parameters_.flag("repair") && !parameters_.flag("visualize_errors");
   }
 
-  void recordBlocks(const Frame& frame, const raster::RasterPush& front) const {
-    const auto compute = Stage::eComputeShader;
-    const BlocksPush push{.mesh = front.mesh,
-                          .frame = front.frame,
-                          .entries = front.entries,
-                          .segments = front.segments,
-                          .rasterCounters = front.counters,
-                          .list = buffers_.list.address(),
-                          .keys = buffers_.keys.address(),
-                          .blocks = buffers_.blocks.address(),
-                          .filterJobs = buffers_.filterJobs.address(),
-                          .binBlocks = buffers_.binBlocks.address(),
-                          .segmentLists = buffers_.segmentLists.address(),
-                          .counters = buffers_.counters.address(),
-                          .listCapacity = buffers_.listCapacity,
-                          .cachedCapacity = buffers_.cachedCapacity};
-    auto run = [&](const Program& program, std::size_t offset) {
-      dispatchCounted(frame, *program, push, frontEnd_.counters().vk(), offset);
-    };
-    if (needed_.highBins) run(programs_.countHigh, offsetof(RasterCounters, high));
-    run(programs_.countAndWriteLow, offsetof(RasterCounters, low));
-    frame.barrier(compute, compute | Stage::eDrawIndirect);
-    if (!needed_.highBins) return;
-    run(programs_.writeHigh, offsetof(RasterCounters, high));
-    frame.barrier(compute, compute);
-  }
-
-  BlendPush pushOf(const Frame& frame, const raster::RasterPush& front) const {
+  BlendPush pushOf(const Frame& frame) const {
     std::uint32_t flags = frame.instrumented ? COUNT_SAMPLES : 0u;
     // Without it invalid pixels stay; lists too long to be sorted elsewhere are the repair's even
     // so.
     if (repairs()) flags |= REPAIR;
     if (parameters_.flag("visualize_errors")) flags |= SHOW_ERRORS;
-    return {.mesh = front.mesh,
-            .frame = front.frame,
-            .list = buffers_.list.address(),
-            .keys = buffers_.keys.address(),
-            .blocks = buffers_.blocks.address(),
-            .filterJobs = buffers_.filterJobs.address(),
+    return {.mesh = lists_.mesh(frame),
+            .frame = frame.constants,
+            .list = lists_.list().address(),
+            .keys = lists_.keys().address(),
+            .blocks = lists_.blocks().address(),
+            .medium = lists_.medium().address(),
             .repairs = buffers_.repairs.address(),
-            .counters = buffers_.counters.address(),
-            .halfBlocks = frontEnd_.bins() * HALF_BLOCKS,
+            .counters = lists_.counters().address(),
+            .halfBlocks = lists_.halfBlocks(),
             .size = {frame.target.width(), frame.target.height()},
             .repairCapacity = buffers_.repairCapacity,
             .alphaThreshold = float(parameters_.real("alpha_threshold")),
@@ -222,7 +194,7 @@ class Lucid : public Method {
                     .round = 0,
                     .rounds = deepRounds_};
     auto run = [&](const Pipeline& pipeline, std::size_t offset) {
-      dispatchCounted(frame, pipeline, push, buffers_.counters.vk(), offset);
+      dispatchCounted(frame, pipeline, push, lists_.counters().vk(), offset);
     };
     frame.barrier(compute, compute | Stage::eDrawIndirect);
     run(*programs_.repair, offsetof(LucidCounters, repair));
@@ -235,11 +207,9 @@ class Lucid : public Method {
     }
   }
 
-  void makeRoomForSegments() { buffers_.makeRoomForSegments(frontEnd_.segmentCapacity()); }
-
   void poison(const Frame& frame) const {
     constexpr std::uint32_t pattern = 0xcdcdcdcd;
-    frontEnd_.poison(frame.commands, pattern);
+    lists_.poison(frame.commands, pattern);
     buffers_.poison(frame.commands, pattern);
     frame.barrier(Stage::eTransfer, Stage::eTransfer | Stage::eComputeShader);
   }
@@ -248,7 +218,7 @@ class Lucid : public Method {
   const GpuScene& scene_;
   std::string targetFormat_;  // as shaders name it
   Parameters parameters_;
-  raster::FrontEnd frontEnd_;
+  raster::BlockLists lists_;
   Buffers buffers_;
   Programs programs_;
   Needed needed_;

@@ -1,6 +1,6 @@
 #version 460
 // Stage 3, phase 3 (shading and blending): one subgroup (a "team") per half-block. Three programs:
-//   ordered  ORDERED, LIST = ORDERED_LIST: short lists, which are sorted here. In most pixels the fragments arrive
+//   ordered  ORDERED, LIST = SHORT_LIST: short lists, which are sorted here. In most pixels the fragments arrive
 //            nearly in the order of the sorted triangles, so that a depth filter of 1 is enough. The other pixels
 //            are passed on to low.
 //   low      these pixels, and half-blocks with longer lists, with the depth filter.
@@ -10,7 +10,8 @@
 // Each lane owns one pixel. In subgroups of fewer than 32 lanes it owns several; in subgroups of 64 lanes half of
 // the lanes own none.
 #include "common/bindings.glsl"
-#include "lucid/half_block.glsl"
+#include "lucid/lucid_types.h"
+#include "raster/blocks/half_block.glsl"
 
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { BlendPush push; };
@@ -43,14 +44,14 @@ void repair(HalfBlock block, uint pixels) {
   }
 }
 
-// Passes pixels on to low raster, which has one workgroup per LOW_TEAMS jobs.
+// Passes pixels on to low raster, which has one workgroup per MEDIUM_TEAMS jobs.
 void passOn(HalfBlock block, uint pixels) {
-  const uint job = push.counters.c.lowLists + atomicAdd(push.counters.c.passedJobs, 1u);
-  push.filterJobs.at[job] = PixelJob(block, pixels);
+  const uint job = push.counters.c.lists.mediumLists + atomicAdd(push.counters.c.passedJobs, 1u);
+  push.medium.at[job] = PixelJob(block, pixels);
 #if VERIFY_LOOPS
   atomicAdd(push.counters.c.passedOn, block.count);
 #endif
-  atomicMax(push.counters.c.low.x, min(job / LOW_TEAMS + 1u, MAX_GROUPS));
+  atomicMax(push.counters.c.lists.mediumGroups.x, min(job / MEDIUM_TEAMS + 1u, MAX_GROUPS));
 }
 
 void countSamples(uint samples, uint iterations) {
@@ -71,7 +72,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
   [[unroll]] for (uint g = 0u; g < GROUPS; ++g) {
     const uint bit = bitOf(g);
     clearPixel(pixels[g]);
-    opaque[g] = opaqueDepthAt(corner + ivec2(pixelOf(bit)));
+    opaque[g] = opaqueDepthAt(push.frame, corner + ivec2(pixelOf(bit)));
     if (lane < OWNERS) samplesOf[32u * team + bit] = 0u;
   }
 
@@ -94,13 +95,13 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
 #if INTERPOLATES == 0
       // Prepared once for all portions. With interpolation this would take more registers than it saves time.
       Prepared ready;
-      if (item.mask != 0u) ready = prepare(item.triangle, corner);
+      if (item.mask != 0u) ready = prepare(push.mesh, push.frame, item.triangle, corner);
 #endif
       for (uint portion = 0u; portion < b.size; portion += PREPARED_COUNT) {
         const uint mine = b.place - b.at - portion;  // wraps around for an earlier portion
         if (item.mask != 0u && mine < PREPARED_COUNT) {
 #if INTERPOLATES
-          const Prepared ready = prepare(item.triangle, corner);
+          const Prepared ready = prepare(push.mesh, push.frame, item.triangle, corner);
 #endif
           storePrepared(team * PREPARED_COUNT + mine, ready);
         }
@@ -123,12 +124,12 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
         const uvec2 hit = sampleOf(b, chunk);
         if (lane < OWNERS && chunk + lane < b.samples) {
           const vec2 hitPixel = vec2(pixelOf(hit.y));
-          const Prepared t = prepare(hit.x, corner);
-          Fragment f;
+          const Prepared t = prepare(push.mesh, push.frame, hit.x, corner);
+          Sample f;
           f.invW = invWOf(t, hitPixel);
           f.id = idOf(t);
           const bool known = (full & (1u << hit.y)) != 0u;
-          if (known || shadePrepared(t, hitPixel, f.invW, f.color)) {
+          if (known || shadePrepared(push.frame, t, hitPixel, f.invW, f.color)) {
             storeSample(lane, f);
             atomicOr(samplesOf[32u * team + hit.y], 1u << lane);
           }
@@ -196,19 +197,31 @@ void handOver(HalfBlock block) {
   }
 }
 
+// The sizes of later dispatches that do not depend on what is counted. Each program of this step may be the only one.
+void shapeDispatches() {
+  if (gl_WorkGroupID.x + gl_WorkGroupID.y + gl_LocalInvocationIndex != 0u) return;
+  atomicMax(push.counters.c.repair.y, 1u);
+  atomicMax(push.counters.c.repair.z, 1u);
+  atomicMax(push.counters.c.deep.z, 1u);
+  atomicMax(push.counters.c.deepResolve.y, 1u);
+  atomicMax(push.counters.c.deepResolve.z, 1u);
+}
+
 TEAM_MAIN void main() {
+  shapeDispatches();
 #if HIGH
-  const uint inRow = push.counters.c.high.x;
+  const uint inRow = push.counters.c.lists.longGroups.x;
 #elif ORDERED
-  const uint inRow = push.counters.c.ordered.x;
+  const uint inRow = push.counters.c.lists.shortGroups.x;
 #else
-  const uint inRow = push.counters.c.low.x;
+  const uint inRow = push.counters.c.lists.mediumGroups.x;
 #endif
-  if (push.counters.c.overflow != 0u) return;
+  if (push.counters.c.lists.overflow != 0u) return;
   const uint group = gl_WorkGroupID.y * inRow + gl_WorkGroupID.x;
   const uint i = subgroupBroadcastFirst(group * TEAMS + gl_SubgroupID);
 #if HIGH
-  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS, count = subgroupBroadcastFirst(push.counters.c.highLists);
+  const uint stride = subgroupBroadcastFirst(inRow) * TEAMS;
+  const uint count = subgroupBroadcastFirst(push.counters.c.lists.longLists);
   for (uint job = i; job < count; job += stride) {
     const HalfBlock block = uniformly(push.blocks.at[push.halfBlocks - 1u - job]);
     if (block.count > HIGH_LIST) handOver(block);
@@ -217,13 +230,13 @@ TEAM_MAIN void main() {
   }
 #elif ORDERED
   // One half-block per team. The device schedules the workgroups, where the paper has persistent threads.
-  if (i < subgroupBroadcastFirst(push.counters.c.orderedLists))
+  if (i < subgroupBroadcastFirst(push.counters.c.lists.shortLists))
     blendHalfBlock(uniformly(push.blocks.at[i]), 0xffffffffu);
 #else
   const uint stride = subgroupBroadcastFirst(inRow) * TEAMS;
-  const uint count = subgroupBroadcastFirst(push.counters.c.lowLists + push.counters.c.passedJobs);
+  const uint count = subgroupBroadcastFirst(push.counters.c.lists.mediumLists + push.counters.c.passedJobs);
   for (uint job = i; job < count; job += stride) {
-    const PixelJob pixels = push.filterJobs.at[job];
+    const PixelJob pixels = push.medium.at[job];
     blendHalfBlock(uniformly(pixels.block), subgroupBroadcastFirst(pixels.pixels));
     teamBarrier();
   }

@@ -2,31 +2,32 @@
 // Captures the fragments of deep pixels (more than REPAIR_LIST fragments) into linked lists (Yang et al. 2010).
 // Workgroup (x, y) reads chunk y of the list of deep pixel x's half-block.
 #include "common/bindings.glsl"
-#include "lucid/half_block.glsl"
+#include "lucid/lucid_types.h"
+#include "raster/blocks/half_block.glsl"
 
 layout(local_size_x = DEEP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
-#include "lucid/fragment.glsl"
+#include "raster/fragments/prepare.glsl"
 
 void capture(uint number) {
   const HalfBlock block = push.deepPixels.at[number].block;
   const uint bit = push.deepPixels.at[number].bit;
   const ivec2 corner = cornerOf(block.number, push.frame.c.size);
   const vec2 pixel = vec2(pixelOf(bit));
-  const float opaque = opaqueDepthAt(corner + ivec2(pixel));
+  const float opaque = opaqueDepthAt(push.frame, corner + ivec2(pixel));
   const uint begin = gl_WorkGroupID.y * DEEP_CHUNK;
   const uint end = min(begin + DEEP_CHUNK, block.count);
   for (uint i = begin + gl_LocalInvocationIndex; i < end; i += DEEP_GROUP) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
-    const Prepared t = prepare(item.triangle, corner);
+    const Prepared t = prepare(push.mesh, push.frame, item.triangle, corner);
     const float invW = invWOf(t, pixel);
-    if (isHidden(invW, opaque)) continue;
+    if (isHidden(push.frame, invW, opaque)) continue;
     const uint index = atomicAdd(push.counters.c.deepCaptured, 1u);
     if (index >= push.nodeCapacity) continue;
     vec4 color;
-    const bool kept = shadePrepared(t, pixel, invW, color);
+    const bool kept = shadePrepared(push.frame, t, pixel, invW, color);
     Node node;
     node.color = kept ? color : vec4(-1.0);  // cut out: counted, not blended
     node.depth = invW;

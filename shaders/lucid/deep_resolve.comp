@@ -2,7 +2,8 @@
 // Sorts and blends the lists of deep pixels, one invocation per pixel, in as many rounds as needed.
 #include "common/bindings.glsl"
 #include "common/list_sort.glsl"
-#include "lucid/half_block.glsl"
+#include "lucid/lucid_types.h"
+#include "raster/blocks/half_block.glsl"
 
 // Several lists per workgroup: with one list, where everything is uniform, llvmpipe (Mesa 22.3) loses links of it.
 layout(local_size_x = DEEP_RESOLVE_GROUP) in;

@@ -5,7 +5,7 @@
 #define OITLAB_LUCID_DEPTH_FILTER_GLSL
 
 #include "common/order.glsl"
-#include "lucid/fragment.glsl"
+#include "raster/fragments/prepare.glsl"
 
 struct Pixel {
   vec4 accumulated;  // premultiplied
@@ -13,12 +13,12 @@ struct Pixel {
   uint lastId;
   bool invalid;      // a fragment came after one that it is in front of
   uint samples;      // blended
-  Fragment queue[DEPTH_FILTER];  // front to back
+  Sample queue[DEPTH_FILTER];  // front to back
 };
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
 
-bool isInFront(Fragment a, Fragment b) { return isInFront(a.invW, a.id, b.invW, b.id); }
+bool isInFront(Sample a, Sample b) { return isInFront(a.invW, a.id, b.invW, b.id); }
 
 // An empty place holds a transparent fragment in front of all others. It leaves first and changes nothing.
 void clearPixel(out Pixel p) {
@@ -27,14 +27,14 @@ void clearPixel(out Pixel p) {
   p.lastId = 0u;
   p.invalid = false;
   p.samples = 0u;
-  [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Fragment(NEAREST, 0u, vec4(0.0));
+  [[unroll]] for (int i = 0; i < DEPTH_FILTER; ++i) p.queue[i] = Sample(NEAREST, 0u, vec4(0.0));
 }
 
 bool isFull(Pixel p) { return HAS_THRESHOLD == 1 && p.accumulated.a >= push.alphaThreshold; }
 
 // The order is right if and only if no fragment is in front of the one before it, so every wrong pixel is found.
 // Fragments behind the alpha threshold are not blended, but their order is still checked.
-void blendFragment(inout Pixel p, Fragment f) {
+void blendFragment(inout Pixel p, Sample f) {
   p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   if (!isFull(p)) {
     p.lastInvW = f.invW;
@@ -45,11 +45,11 @@ void blendFragment(inout Pixel p, Fragment f) {
 
 // Inserts `f`, and blends the nearest fragment of the queue. A pixel that has reached the alpha threshold blends
 // nothing more, so that its fragments need no color.
-void pushFragment(inout Pixel p, Fragment f) {
+void pushFragment(inout Pixel p, Sample f) {
   if (isFull(p)) {
     p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
   } else {
-    Fragment leaving = p.queue[0], carried = f;
+    Sample leaving = p.queue[0], carried = f;
     if (isInFront(f, leaving)) {
       carried = leaving;
       leaving = f;

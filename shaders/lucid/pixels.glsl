@@ -4,9 +4,9 @@
 #define OITLAB_LUCID_PIXELS_GLSL
 
 #include "lucid/depth_filter.glsl"
-#include "lucid/half_block.glsl"
-#include "lucid/prepared.glsl"
-#include "lucid/samples.glsl"
+#include "raster/blocks/half_block.glsl"
+#include "raster/fragments/prepared.glsl"
+#include "raster/fragments/samples.glsl"
 
 shared uint samplesOf[TEAMS * 32u];  // bit i: sample i falls on this pixel
 
@@ -26,7 +26,7 @@ uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g);
 
 // The fragment of a prepared triangle at a pixel. Where the triangle does not cover it, the fragment is not used.
 struct Taken {
-  Fragment f;
+  Sample f;
   bool kept;   // the fragment exists and must be pushed
   bool blends; // and it is not behind the alpha threshold
 };
@@ -37,13 +37,13 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   taken.f.invW = invWOf(t, pixel);
   taken.f.id = idOf(t);
   taken.f.color = vec4(0.0);
-  taken.kept = covered && !isHidden(taken.f.invW, opaque);
+  taken.kept = covered && !isHidden(push.frame, taken.f.invW, opaque);
   taken.blends = taken.kept && !full;
 #if HAS_TEXTURES  // a branch is cheaper than texture reads whose result is not used
   if (taken.blends)
 #endif
   {
-    const bool there = shadePrepared(t, pixel, taken.f.invW, taken.f.color);
+    const bool there = shadePrepared(push.frame, t, pixel, taken.f.invW, taken.f.color);
     taken.kept = taken.kept && (full || there);
     taken.blends = taken.blends && there;
   }
@@ -86,8 +86,8 @@ void blendSamples(inout Pixel p, uint own, uint bit, float opaque) {
   if ((own & (1u << bit)) != 0u) arrived = samplesOf[32u * gl_SubgroupID + bit];
   if (arrived != 0u) samplesOf[32u * gl_SubgroupID + bit] = 0u;
   for (; arrived != 0u; arrived &= arrived - 1u) {
-    const Fragment f = loadSample(findLSB(arrived));
-    if (!isHidden(f.invW, opaque)) {
+    const Sample f = loadSample(findLSB(arrived));
+    if (!isHidden(push.frame, f.invW, opaque)) {
       p.samples += uint(!isFull(p));
       pushFragment(p, f);
     }

@@ -3,7 +3,7 @@
 // declares a `push` that has keys.
 #include "lucid/networks.glsl"
 #include "lucid/pack_key.glsl"
-#include "lucid/team.glsl"
+#include "raster/fragments/team.glsl"
 
 #extension GL_KHR_shader_subgroup_shuffle : require
 

@@ -3,7 +3,8 @@
 // to register such pixels and to process them with a slower, conservative algorithm (section 2, "Sample blending").
 // Here, one subgroup per half-block takes its pixels one after the other, sorts all their fragments and blends them.
 #include "common/bindings.glsl"
-#include "lucid/half_block.glsl"
+#include "lucid/lucid_types.h"
+#include "raster/blocks/half_block.glsl"
 
 #define TEAMS 1u
 #define LIST REPAIR_LIST
@@ -11,8 +12,8 @@ layout(local_size_x = SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { RepairPush push; };
 
 #include "common/order.glsl"
-#include "lucid/fragment.glsl"
-#include "lucid/exact_sort.glsl"
+#include "raster/fragments/prepare.glsl"
+#include "raster/blocks/exact_sort.glsl"
 
 shared uint found, walked;
 shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fragment out
@@ -41,7 +42,7 @@ void blendPixel(ivec2 corner, uint bit) {
   const uint lane = gl_SubgroupInvocationID;
   const uvec2 pixel = pixelOf(bit);
   const ivec2 place = corner + ivec2(pixel);
-  const float opaque = opaqueDepthAt(place);
+  const float opaque = opaqueDepthAt(push.frame, place);
   if (lane == 0u) found = walked = 0u;
   teamBarrier();
   uint steps = 0u;
@@ -50,7 +51,7 @@ void blendPixel(ivec2 corner, uint bit) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
     const float invW = invWAt(item.triangle, corner, vec2(pixel));
-    if (isHidden(invW, opaque)) continue;
+    if (isHidden(push.frame, invW, opaque)) continue;
     const uint place = atomicAdd(found, 1u);
     if (place < LIST) keys[place] = uvec2(floatBitsToUint(invW), i);
   }
@@ -72,9 +73,9 @@ void blendPixel(ivec2 corner, uint bit) {
   for (uint first = 0u; first < count; first += SUBGROUP_SIZE) {
     if (first + lane < count) {
       const TriHalfBlock item = itemAt(push.list, block.first + keys[first + lane].y);
-      const Prepared t = prepare(item.triangle, corner);
+      const Prepared t = prepare(push.mesh, push.frame, item.triangle, corner);
       vec4 color;
-      const bool kept = shadePrepared(t, vec2(pixel), invWOf(t, vec2(pixel)), color);
+      const bool kept = shadePrepared(push.frame, t, vec2(pixel), invWOf(t, vec2(pixel)), color);
       colors[lane] = kept ? color : vec4(-1.0);
     }
     teamBarrier();

@@ -1,4 +1,4 @@
-// The order of a list of at most ORDERED_LIST, for the subgroup that blends it. The includer declares `push` with
+// The order of a list of at most SHORT_LIST, for the subgroup that blends it. The includer declares `push` with
 // keys.
 #ifndef OITLAB_LUCID_SHORT_LIST_GLSL
 #define OITLAB_LUCID_SHORT_LIST_GLSL

@@ -4,7 +4,7 @@
 #define OITLAB_LUCID_SORT_GLSL
 
 #include "lucid/pack_key.glsl"
-#include "lucid/team.glsl"
+#include "raster/fragments/team.glsl"
 
 shared uint keys[TEAMS * LIST];
 

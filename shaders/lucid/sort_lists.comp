@@ -5,8 +5,9 @@
 // with SMALL_SUBGROUP it has more. HIGH would need 32, for which NVIDIA's compiler (580.159.04) made code that
 // sorts wrongly (lucid_sort_test.cpp).
 //
-// HIGH 1: lists with more than LOW_LIST. Those with more than HIGH_LIST need no order (blend.comp).
-#include "lucid/half_block.glsl"
+// HIGH 1: lists with more than MEDIUM_LIST. Those with more than HIGH_LIST need no order (blend.comp).
+#include "lucid/lucid_types.h"
+#include "raster/blocks/half_block.glsl"
 
 layout(local_size_x = TEAMS * SUBGROUP_SIZE) in;
 layout(push_constant, scalar) uniform Push { BlendPush push; };
@@ -52,12 +53,12 @@ void sortHalfBlock(HalfBlock block) {
 #endif
 
 TEAM_MAIN void main() {
-  if (push.counters.c.overflow != 0u) return;
+  if (push.counters.c.lists.overflow != 0u) return;
 #if HIGH
-  const uint groups = push.counters.c.high.x, count = subgroupBroadcastFirst(push.counters.c.highLists);
+  const uint groups = push.counters.c.lists.longGroups.x, count = subgroupBroadcastFirst(push.counters.c.lists.longLists);
 #else
-  // Not low.x, to which ordered raster adds at the same time.
-  const uint count = subgroupBroadcastFirst(push.counters.c.lowLists);
+  // Not mediumGroups.x, to which ordered raster adds at the same time.
+  const uint count = subgroupBroadcastFirst(push.counters.c.lists.mediumLists);
   const uint groups = min((count + TEAMS - 1u) / TEAMS, MAX_GROUPS);
 #endif
   const uint stride = subgroupBroadcastFirst(groups) * TEAMS;
@@ -66,7 +67,7 @@ TEAM_MAIN void main() {
     const HalfBlock block = uniformly(push.blocks.at[push.halfBlocks - 1u - job]);
     if (block.count <= LIST) sortHalfBlock(block);
 #else
-    sortHalfBlock(uniformly(push.filterJobs.at[job].block));
+    sortHalfBlock(uniformly(push.medium.at[job].block));
 #endif
   }
 }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "lucid/programs.h"
+#include "raster/block_lists.h"
 #include "measure/clock_probe.h"
 #include "render/depth_complexity.h"
 #include "support/gpu.h"
@@ -47,8 +48,7 @@ std::vector<Given> variantsOf(const MethodInfo& method) {
 /// Programs of lucid that a frame would only make when it needs them.
 void makeAll(const lucid::Programs& programs) {
   for (const auto* program :
-       {&programs.countHigh, &programs.countAndWriteLow, &programs.writeHigh, &programs.ordered,
-        &programs.sortLow, &programs.sortHigh, &programs.lowRaster, &programs.highRaster,
+       {&programs.ordered, &programs.sortLow, &programs.sortHigh, &programs.lowRaster, &programs.highRaster,
         &programs.repair, &programs.deepCapture, &programs.deepResolve})
     **program;
 }
@@ -91,10 +91,14 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
           for (const bool irregular : {false, true})
             make(what, [&] {
               const Parameters parameters(method.parameters, given, name);
-              makeAll({device, fixture->scene(), irregular, irregular, "rgba16f", parameters});
+              makeAll({device, fixture->renderer().scene(), irregular, "rgba16f", parameters});
             });
     }
   }
+  MemoryLedger memory;
+  raster::BlockLists lists(device, fixtures.front()->renderer().scene(),
+                           fixtures.front()->target(), memory, {});
+  for (const bool hasUnsnapped : {false, true}) lists.makeAllPrograms(hasUnsnapped);
   ClockProbe probe(device, 1, 1);
   fixtures.back()->render("blend");
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());

@@ -4,7 +4,7 @@
 
 #include "gpu/barrier.h"
 #include "lucid/lucid_types.h"
-#include "lucid/programs.h"
+#include "raster/raster_defines.h"
 #include "support/gpu.h"
 #include "util/random.h"
 
@@ -18,10 +18,10 @@ class LucidSortGpu : public GpuTest {};
 std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<float>>& lists,
                                                  bool high, bool registers, unsigned teams) {
   const Device& device = sharedDevice();
-  Defines defines = lucid::teamDefines(device);
+  Defines defines = raster::teamDefines(device);
   defines["SMALL_SUBGROUP"] = registers ? "0" : "1";
   defines["HIGH"] = high ? "1" : "0";
-  defines["LIST"] = high ? "HIGH_LIST" : "LOW_LIST";
+  defines["LIST"] = high ? "HIGH_LIST" : "MEDIUM_LIST";
   defines["TEAMS"] = fmt::format("{}u", teams);
   const Pipeline pipeline =
       Pipeline::compute(device, "lucid/sort_lists.comp", defines, {}, device.info().subgroupSize);
@@ -36,7 +36,8 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
   for (const auto& block : blocks) jobs.push_back({block, ~0u});
   std::reverse(blocks.begin(), blocks.end());  // long lists are stored from the end downwards
   lucid::LucidCounters counters{};
-  counters.lowLists = counters.highLists = counters.high.x = std::uint32_t(lists.size());
+  counters.lists.mediumLists = counters.lists.longLists = counters.lists.longGroups.x =
+      std::uint32_t(lists.size());
 
   MemoryLedger memory;
   const Buffer keyBuffer = uploadBuffer(device, memory, "keys", keys);
@@ -50,7 +51,7 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
     lucid::BlendPush push{};
     push.keys = keyBuffer.address();
     push.blocks = blockBuffer.address();
-    push.filterJobs = jobBuffer.address();
+    push.medium = jobBuffer.address();
     push.counters = counterBuffer.address();
     push.halfBlocks = std::uint32_t(blocks.size());
     pipeline.bind(commands, nullptr, push);
@@ -94,8 +95,8 @@ TEST_F(LucidSortGpu, LeavesListsFrontToBack) {
     unsigned teams;
   } sorts[] = {{"in registers", false, true, 16 * lanes, 1},
                {"in registers, side by side", false, true, 16 * lanes, 4},
-               {"in shared memory", false, false, LOW_LIST, 1},
-               {"in shared memory, side by side", false, false, LOW_LIST, 4},
+               {"in shared memory", false, false, MEDIUM_LIST, 1},
+               {"in shared memory, side by side", false, false, MEDIUM_LIST, 4},
                {"long lists", true, false, HIGH_LIST, 1}};
   for (const auto& sort : sorts) {
     SCOPED_TRACE(sort.name);

@@ -56,7 +56,7 @@ TEST_F(LucidWorstCases, ThousandsOfCoplanarLayers) {
 void expectListsAboutEveryLimit(int width, int height) {
   const auto pixels = std::uint64_t(width) * std::uint64_t(height);
   std::set<std::uint32_t> lengths;
-  for (const std::uint32_t limit : {ORDERED_LIST, LOW_LIST, HIGH_LIST, REPAIR_LIST})
+  for (const std::uint32_t limit : {SHORT_LIST, MEDIUM_LIST, HIGH_LIST, REPAIR_LIST})
     for (const int more : {-1, 0, 1}) lengths.insert(std::uint32_t(int(limit) + more));
   for (const std::uint32_t length : lengths) {
     const Scene scene = layers(int(length), 1.0f, 0.3f, 0.02f);
@@ -64,7 +64,7 @@ void expectListsAboutEveryLimit(int width, int height) {
     SCOPED_TRACE(scene.name);
     EXPECT_EQ(usual.at("fragments"), length * pixels);
     EXPECT_EQ(usual.at("half_blocks"), length);
-    EXPECT_EQ(usual.at("long_lists"), length > LOW_LIST ? 1u : 0u);
+    EXPECT_EQ(usual.at("long_lists"), length > MEDIUM_LIST ? 1u : 0u);
     // Without a filter the order is wrong, except in lists that go directly to the repair.
     RenderFixture fixture(scene, std::uint32_t(width), std::uint32_t(height));
     const auto rough = fixture.render("lucid", {{"depth_filter", "1"}});

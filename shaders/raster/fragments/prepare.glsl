@@ -1,14 +1,14 @@
-// Sample shading (section 2, phase 3): a triangle prepared for one half-block, and its fragment at one pixel. The
-// includer declares `push` and defines HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS (the corners of some triangle differ
+// Sample shading (LucidRaster, section 2, phase 3): a triangle prepared for one half-block, and its fragment at one
+// pixel. The includer defines what raster/scene_defines.h lists: HAS_OPAQUE, HAS_TEXTURES, HAS_GRADIENTS (the corners of some triangle differ
 // in color), HAS_ATTRIBUTES (textures or colors) and HAS_SMOOTH (the corners of some triangle differ in normal). Code
 // for what a scene does not have is left out: on GPUs it would take registers, and llvmpipe executes branches that no
 // lane takes.
-#ifndef OITLAB_LUCID_FRAGMENT_GLSL
-#define OITLAB_LUCID_FRAGMENT_GLSL
+#ifndef OITLAB_RASTER_PREPARE_GLSL
+#define OITLAB_RASTER_PREPARE_GLSL
 
 #include "common/normal.glsl"
 #include "common/shade.glsl"
-#include "lucid/lucid_types.h"
+#include "raster/blocks/block_types.h"
 #include "raster/triangles.glsl"
 
 // Whether anything is interpolated.
@@ -29,7 +29,7 @@ struct Prepared {
   uint firstColor;    // of the first corner, packed
 };
 
-struct Fragment {
+struct Sample {
   float invW;  // 1 / distance: what depth is near times. Larger is nearer
   uint id;
   vec4 color;  // straight, linear
@@ -57,18 +57,24 @@ float boundedInvW(float origin, ShadeTriangle s, vec2 pixel) {
   return planeInvW(origin, s.invWSlope, bounds.x, bounds.y, pixel);
 }
 
+// Reversed depth, as the opaque pass has it: near / distance.
+float depthOf(FrameBuffer frame, float invW) {
+  precise const float depth = frame.c.viewProjection[3][2] * invW;
+  return depth;
+}
+
 // Whether a fragment is behind the opaque depth of its pixel.
-bool isHidden(float invW, float opaqueDepthThere) {
+bool isHidden(FrameBuffer frame, float invW, float opaqueDepthThere) {
 #if HAS_OPAQUE
-  return push.frame.c.viewProjection[3][2] * invW < opaqueDepthThere;
+  return depthOf(frame, invW) < opaqueDepthThere;
 #else
   return false;
 #endif
 }
 
-float opaqueDepthAt(ivec2 place) {
+float opaqueDepthAt(FrameBuffer frame, ivec2 place) {
 #if HAS_OPAQUE
-  return texelFetch(opaqueDepth, min(place, ivec2(push.frame.c.size) - 1), 0).r;
+  return texelFetch(opaqueDepth, min(place, ivec2(frame.c.size) - 1), 0).r;
 #else
   return 0.0;
 #endif
@@ -82,8 +88,8 @@ float opaqueDepthAt(ivec2 place) {
 
 uint pick(uvec4 v, uint i) { return i == 0u ? v.x : i == 1u ? v.y : i == 2u ? v.z : v.w; }
 
-Prepared prepare(ShadeTriangle s, ivec2 corner) {
-  const GpuMaterial material = push.frame.c.materials.at[s.material];
+Prepared prepare(Mesh mesh, FrameBuffer frame, ShadeTriangle s, ivec2 corner) {
+  const GpuMaterial material = frame.c.materials.at[s.material];
   const vec2 d = vec2(corner) + 0.5 - s.anchor;
   const vec2 bounds = boundsOfInvW(s);
   precise const float b1 = fma(s.b1Slope.x, d.x, fma(s.b1Slope.y, d.y, s.weights.x));
@@ -100,10 +106,10 @@ Prepared prepare(ShadeTriangle s, ivec2 corner) {
 #if HAS_ATTRIBUTES
   if ((s.flags & TRIANGLE_COLORED) != 0u || material.atlas != 0u) {
     const uint c = s.flags >> TRIANGLE_CORNER_SHIFT;
-    const uvec4 quad = push.mesh.quads.at[s.quad].corners;
-    const vec4 v0 = push.mesh.vertices.at[pick(quad, c & 3u)].uvColorMaterial;
-    const vec4 v1 = push.mesh.vertices.at[pick(quad, (c >> 2) & 3u)].uvColorMaterial;
-    const vec4 v2 = push.mesh.vertices.at[pick(quad, (c >> 4) & 3u)].uvColorMaterial;
+    const uvec4 quad = mesh.quads.at[s.quad].corners;
+    const vec4 v0 = mesh.vertices.at[pick(quad, c & 3u)].uvColorMaterial;
+    const vec4 v1 = mesh.vertices.at[pick(quad, (c >> 2) & 3u)].uvColorMaterial;
+    const vec4 v2 = mesh.vertices.at[pick(quad, (c >> 4) & 3u)].uvColorMaterial;
     const uvec3 colors = floatBitsToUint(vec3(v0.z, v1.z, v2.z));
     p.uvs = vec4(v0.xy, v1.xy - v0.xy);
     p.more = vec4(v2.xy - v0.xy, uintBitsToFloat(colors.yz));
@@ -127,14 +133,16 @@ Prepared prepare(ShadeTriangle s, ivec2 corner) {
   return p;
 }
 
-Prepared prepare(uint slot, ivec2 corner) { return prepare(loadShading(push.mesh, slot), corner); }
+Prepared prepare(Mesh mesh, FrameBuffer frame, uint slot, ivec2 corner) {
+  return prepare(mesh, frame, loadShading(mesh, slot), corner);
+}
 
 float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.range.x, p.range.y, pixel); }
 uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }
 
 // The color (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block. Returns false if the
 // material cuts it out.
-bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
+bool shadePrepared(FrameBuffer frame, Prepared p, vec2 pixel, float invW, out vec4 color) {
   const uint bits = floatBitsToUint(p.w.w);
   GpuMaterial material;
   material.baseColor = p.color;
@@ -154,7 +162,7 @@ bool shadePrepared(Prepared p, vec2 pixel, float invW, out vec4 color) {
   s.normal = normal;
 #if HAS_TEXTURES
   if (material.atlas != 0u) {
-    material.atlasRect = push.frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
+    material.atlasRect = frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
     const vec2 uv2 = p.more.xy;
     precise const vec2 uv = fma(vec2(b1), p.uvs.zw, fma(vec2(b2), uv2, p.uvs.xy));
     // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.

@@ -3,17 +3,18 @@
 // per segment of a bin. The paper goes from block rows to blocks to half-blocks through scratch memory. Here,
 // rows of pixels become half-block masks directly in shared memory, and lists are allocated at their exact size.
 //
-// FIRST_LIST: ORDERED_LIST, or 0 where all lists go through the depth filter.
+// Lists of up to FIRST_LIST count as short, others of up to MEDIUM_LIST as medium, others as long. KEY says what is
+// stored beside each tri-half-block.
 //
 // PASS: COUNT_AND_WRITE_LOW counts and writes bins of one segment. COUNT_HIGH counts bins of several segments;
 // the last workgroup of a bin allocates its lists. WRITE_HIGH writes them, from what COUNT_HIGH cached.
-#include "lucid/lucid_types.h"
-#include "lucid/sort_key.glsl"
+#include "raster/blocks/block_types.h"
+#include "raster/blocks/sort_key.glsl"
 
 layout(local_size_x = GROUP) in;
 layout(push_constant, scalar) uniform Push { BlocksPush push; };
 
-#include "lucid/half_block_rows.glsl"
+#include "raster/blocks/half_block_rows.glsl"
 
 // The tri-half-blocks of a segment are cached from counting to writing. A segment that has more is rasterized
 // again. In the hairball a segment has about 360, in other scenes some have more. A larger cache would help few
@@ -26,7 +27,7 @@ shared uint cachedPlaces[CACHE_SIZE];  // half-block, triangle of the segment, p
 
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
 shared uint cached, cachedFirst, base, total;
-shared uint orderedLists, lowLists, highLists, firstOrdered, firstLow, firstHigh;
+shared uint shortLists, mediumLists, longLists, longItems, firstShort, firstMedium, firstLong;
 shared uint last;
 
 ivec2 cornerIn(ivec2 region, uint block) {
@@ -35,12 +36,20 @@ ivec2 cornerIn(ivec2 region, uint block) {
 }
 
 uint keyOf(ivec2 region, uint slot, uint mask, uint block) {
+#if KEY == KEY_DEPTH
   return sortKey(push.mesh, slot, cornerIn(region, block), mask);
+#elif KEY == KEY_ID
+  return idOfTriangle(push.mesh, slot);
+#else
+  return 0u;
+#endif
 }
 
 void writeItem(uint slot, uint mask, uint key, uint block, uint place) {
   push.list.at[starts[block] + place] = uvec2(slot, mask);
+#if KEY != KEY_NONE
   push.keys.at[starts[block] + place] = key;
+#endif
 }
 
 // `number`: index of the triangle in its segment.
@@ -100,7 +109,7 @@ uint halfBlocksOfFrame() {
 // Allocates the lists of a bin, from `lengths` to `starts`. All invocations must call this.
 void makeLists(uint number) {
   const uint self = gl_LocalInvocationIndex;
-  if (self == 0u) orderedLists = lowLists = highLists = 0u;
+  if (self == 0u) shortLists = mediumLists = longLists = longItems = 0u;
   barrier();
   uint rank = 0u, before = 0u;
   if (self < HALF_BLOCKS) {
@@ -108,36 +117,42 @@ void makeLists(uint number) {
     [[dont_unroll]] for (uint b = 0u; b < self; ++b) before += lengths[b];
     const uint length = lengths[self];
     if (self == HALF_BLOCKS - 1u) total = before + length;
-    if (length > LOW_LIST) rank = atomicAdd(highLists, 1u);
-    else if (length > FIRST_LIST) rank = atomicAdd(lowLists, 1u);
-    else if (length > 0u) rank = atomicAdd(orderedLists, 1u);
+    if (length > MEDIUM_LIST) {
+      rank = atomicAdd(longLists, 1u);
+      atomicAdd(longItems, length);
+      atomicMax(push.counters.c.longest, length);
+    } else if (length > FIRST_LIST) rank = atomicAdd(mediumLists, 1u);
+    else if (length > 0u) rank = atomicAdd(shortLists, 1u);
   }
   barrier();
   if (self == 0u) {
     base = total > 0u ? atomicAdd(push.counters.c.triHalfBlocks, total) : 0u;
     if (base + total > push.listCapacity) atomicMax(push.counters.c.overflow, 1u);
-    if (orderedLists > 0u) firstOrdered = atomicAdd(push.counters.c.orderedLists, orderedLists);
-    if (lowLists > 0u) firstLow = atomicAdd(push.counters.c.lowLists, lowLists);
-    if (highLists > 0u) firstHigh = atomicAdd(push.counters.c.highLists, highLists);
+    if (shortLists > 0u) firstShort = atomicAdd(push.counters.c.shortLists, shortLists);
+    if (mediumLists > 0u) firstMedium = atomicAdd(push.counters.c.mediumLists, mediumLists);
+    if (longLists > 0u) {
+      firstLong = atomicAdd(push.counters.c.longLists, longLists);
+      atomicAdd(push.counters.c.longItems, longItems);
+    }
     // Workgroups for all lists so far; the maximum over all bins remains.
-    const uint ordered = orderedLists > 0u ? (firstOrdered + orderedLists + ORDERED_TEAMS - 1u) / ORDERED_TEAMS : 0u;
-    const uint low = lowLists > 0u ? (firstLow + lowLists + LOW_TEAMS - 1u) / LOW_TEAMS : 0u;
-    atomicMax(push.counters.c.ordered.x, min(ordered, MAX_GROUPS));
-    atomicMax(push.counters.c.ordered.y, (ordered + MAX_GROUPS - 1u) / MAX_GROUPS);
-    atomicMax(push.counters.c.low.x, min(low, MAX_GROUPS));
-    if (highLists > 0u) atomicMax(push.counters.c.high.x, min(firstHigh + highLists, MAX_GROUPS));
+    const uint ofShort = shortLists > 0u ? (firstShort + shortLists + SHORT_TEAMS - 1u) / SHORT_TEAMS : 0u;
+    const uint ofMedium = mediumLists > 0u ? (firstMedium + mediumLists + MEDIUM_TEAMS - 1u) / MEDIUM_TEAMS : 0u;
+    atomicMax(push.counters.c.shortGroups.x, min(ofShort, MAX_GROUPS));
+    atomicMax(push.counters.c.shortGroups.y, (ofShort + MAX_GROUPS - 1u) / MAX_GROUPS);
+    atomicMax(push.counters.c.mediumGroups.x, min(ofMedium, MAX_GROUPS));
+    if (longLists > 0u) atomicMax(push.counters.c.longGroups.x, min(firstLong + longLists, MAX_GROUPS));
   }
   barrier();
   if (self < HALF_BLOCKS) {
     const uint length = lengths[self];
     starts[self] = base + before;
     const HalfBlock block = HalfBlock(number * HALF_BLOCKS + self, base + before, length);
-    if (length > LOW_LIST)
-      push.blocks.at[halfBlocksOfFrame() - 1u - (firstHigh + rank)] = block;
+    if (length > MEDIUM_LIST)
+      push.blocks.at[halfBlocksOfFrame() - 1u - (firstLong + rank)] = block;
     else if (length > FIRST_LIST)
-      push.filterJobs.at[firstLow + rank] = PixelJob(block, 0xffffffffu);
+      push.medium.at[firstMedium + rank] = PixelJob(block, 0xffffffffu);
     else if (length > 0u)
-      push.blocks.at[firstOrdered + rank] = block;
+      push.blocks.at[firstShort + rank] = block;
   }
   barrier();
 }
@@ -224,11 +239,9 @@ void main() {
   if (push.counters.c.overflow != 0u) return;
 #else
   if (gl_WorkGroupID.x == 0u && gl_LocalInvocationIndex == 0u) {
-    push.counters.c.ordered.z = 1u;
-    push.counters.c.low.y = push.counters.c.low.z = 1u;
-    push.counters.c.high.y = push.counters.c.high.z = 1u;
-    push.counters.c.repair.y = push.counters.c.repair.z = 1u;
-    push.counters.c.deep.z = push.counters.c.deepResolve.y = push.counters.c.deepResolve.z = 1u;
+    push.counters.c.shortGroups.z = 1u;
+    push.counters.c.mediumGroups.y = push.counters.c.mediumGroups.z = 1u;
+    push.counters.c.longGroups.y = push.counters.c.longGroups.z = 1u;
   }
 #endif
   for (uint i = gl_WorkGroupID.x; i < segments; i += groupCount) {

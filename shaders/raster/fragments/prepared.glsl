@@ -1,8 +1,8 @@
 // Prepared triangles: one lane prepares each, and all lanes of the team read it. The includer defines TEAMS.
-#ifndef OITLAB_LUCID_PREPARED_GLSL
-#define OITLAB_LUCID_PREPARED_GLSL
+#ifndef OITLAB_RASTER_PREPARED_GLSL
+#define OITLAB_RASTER_PREPARED_GLSL
 
-#include "lucid/fragment.glsl"
+#include "raster/fragments/prepare.glsl"
 
 // Number of 16-byte words per triangle. Every scene needs the first four. The number is odd, so that the accesses of
 // neighboring lanes fall into different banks.
@@ -57,14 +57,14 @@ Prepared loadPrepared(uint at) {
 // The same memory is used where a team's lanes exchange samples instead: two words per lane.
 uint sampleWord(uint lane) { return gl_SubgroupID * PREPARED_COUNT * PREPARED_WORDS + 2u * lane; }
 
-void storeSample(uint lane, Fragment f) {
+void storeSample(uint lane, Sample f) {
   preparedWords[sampleWord(lane)] = f.color;
   preparedWords[sampleWord(lane) + 1u].xy = vec2(f.invW, uintBitsToFloat(f.id));
 }
 
-Fragment loadSample(uint lane) {
+Sample loadSample(uint lane) {
   const vec2 key = preparedWords[sampleWord(lane) + 1u].xy;
-  return Fragment(key.x, floatBitsToUint(key.y), preparedWords[sampleWord(lane)]);
+  return Sample(key.x, floatBitsToUint(key.y), preparedWords[sampleWord(lane)]);
 }
 
 #endif

@@ -2,7 +2,7 @@
 // Stage 2, phase 3 for small quads: writes each quad to the lists of the bins that its bounding box overlaps. Up to 3
 // of 4 may be overlapped only by the box. Rasterization then finds no coverage.
 #include "raster/raster_types.h"
-#include "raster/subgroup_aggregate.glsl"
+#include "raster/binning/subgroup_aggregate.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };

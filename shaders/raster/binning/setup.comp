@@ -6,7 +6,7 @@
 //
 // HAS_UNSNAPPED 0: quads that may be unsnapped are only counted, and the frame must be recorded again.
 #include "raster/project.glsl"
-#include "raster/subgroup_aggregate.glsl"
+#include "raster/binning/subgroup_aggregate.glsl"
 
 layout(local_size_x = SETUP_GROUP) in;
 layout(push_constant, scalar) uniform Push { RasterPush push; };

@@ -1,9 +1,9 @@
 // The half-block rows (rows of half-blocks, 32 x 4 pixels) that the triangles of a segment reach, as items that are
 // divided evenly among the invocations of a workgroup. The includer defines GROUP and declares `push`.
-#ifndef OITLAB_LUCID_HALF_BLOCK_ROWS_GLSL
-#define OITLAB_LUCID_HALF_BLOCK_ROWS_GLSL
+#ifndef OITLAB_RASTER_HALF_BLOCK_ROWS_GLSL
+#define OITLAB_RASTER_HALF_BLOCK_ROWS_GLSL
 
-#include "lucid/lucid_types.h"
+#include "raster/blocks/block_types.h"
 #include "raster/coverage.glsl"
 
 #extension GL_KHR_shader_subgroup_arithmetic : require

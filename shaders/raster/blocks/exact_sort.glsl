@@ -1,9 +1,9 @@
 // Sorting by depth and primitive id within a subgroup, in shared memory. The includer defines SUBGROUP_SIZE, TEAMS
 // and LIST, and idOfKey(), which breaks ties.
-#ifndef OITLAB_LUCID_EXACT_SORT_GLSL
-#define OITLAB_LUCID_EXACT_SORT_GLSL
+#ifndef OITLAB_RASTER_EXACT_SORT_GLSL
+#define OITLAB_RASTER_EXACT_SORT_GLSL
 
-#include "lucid/team.glsl"
+#include "raster/fragments/team.glsl"
 
 const uint noKey = 0xffffffffu;  // in y: padding, behind everything
 

@@ -1,8 +1,8 @@
 // What tri-half-blocks are sorted by.
-#ifndef OITLAB_LUCID_SORT_KEY_GLSL
-#define OITLAB_LUCID_SORT_KEY_GLSL
+#ifndef OITLAB_RASTER_SORT_KEY_GLSL
+#define OITLAB_RASTER_SORT_KEY_GLSL
 
-#include "lucid/lucid_types.h"
+#include "raster/blocks/block_types.h"
 #include "raster/triangles.glsl"
 
 // 1 / w of a triangle at a place on the screen. Near enough to sort by: the order of fragments is that

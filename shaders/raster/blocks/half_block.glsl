@@ -1,8 +1,8 @@
 // Places in a half-block.
-#ifndef OITLAB_LUCID_HALF_BLOCK_GLSL
-#define OITLAB_LUCID_HALF_BLOCK_GLSL
+#ifndef OITLAB_RASTER_HALF_BLOCK_GLSL
+#define OITLAB_RASTER_HALF_BLOCK_GLSL
 
-#include "lucid/lucid_types.h"
+#include "raster/blocks/block_types.h"
 
 // The pixel of the frame at the upper left of half-block `number` of a frame of that size.
 ivec2 cornerOf(uint number, uvec2 size) {

@@ -1,8 +1,8 @@
 // A team is a subgroup that works on a half-block.
-#ifndef OITLAB_LUCID_TEAM_GLSL
-#define OITLAB_LUCID_TEAM_GLSL
+#ifndef OITLAB_RASTER_TEAM_GLSL
+#define OITLAB_RASTER_TEAM_GLSL
 
-#include "lucid/lucid_types.h"
+#include "raster/blocks/block_types.h"
 
 #extension GL_KHR_memory_scope_semantics : require
 

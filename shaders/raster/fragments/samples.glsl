@@ -1,9 +1,9 @@
 // Lanes take the samples of small triangles one after the other and hand them to the pixels that they fall on
 // (section 2, phase 3). The includer defines SUBGROUP_SIZE and TEAMS.
-#ifndef OITLAB_LUCID_SAMPLES_GLSL
-#define OITLAB_LUCID_SAMPLES_GLSL
+#ifndef OITLAB_RASTER_SAMPLES_GLSL
+#define OITLAB_RASTER_SAMPLES_GLSL
 
-#include "lucid/team.glsl"
+#include "raster/fragments/team.glsl"
 
 // Lanes that take samples, and pixels that a team processes at the same time.
 #define OWNERS min(SUBGROUP_SIZE, 32u)
