@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/frame_types.h"
 #include "frame/frame_timer.h"
 #include "frame/gpu_scene.h"
 #include "frame/target.h"
@@ -22,7 +23,8 @@ struct Frame {
   const Target& target;
   const Camera& camera;
   vk::DescriptorSet bindings;  ///< set 0 of every pipeline
-  std::uint64_t constants;     ///< address of the FrameConstants
+  std::uint64_t constants;     ///< address of `values`
+  const FrameConstants& values;
   bool instrumented;           ///< stages are timed, and counters may cost time
   FrameTimer& timer;
   std::function<void(std::uint32_t part)> fillTarget = {};  ///< see finishTarget()

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,11 @@ class Pipeline {
   void bind(const Commands& commands, vk::DescriptorSet set) const;
 
   /// The same with push constants, a struct of at most Device::pushConstantBytes.
+  void bind(const Commands& commands, vk::DescriptorSet set,
+            std::span<const std::byte> push) const {
+    bind(commands, set);
+    commands.pushConstants<std::byte>(layout_, vk::ShaderStageFlagBits::eAll, 0, push);
+  }
   template <typename Push>
   void bind(const Commands& commands, vk::DescriptorSet set, const Push& push) const {
     static_assert(sizeof(Push) <= Device::pushConstantBytes);

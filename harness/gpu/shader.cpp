@@ -52,12 +52,20 @@ std::filesystem::path absoluteNormal(const std::filesystem::path& path) {
   return (none ? path : absolute).lexically_normal();
 }
 
+/// The file that #include "x" means: if x is a definition, the file that it names.
+std::string includedName(const std::string& name, const Defines& defines) {
+  const auto defined = defines.find(name);
+  return defined == defines.end() ? name : defined->second;
+}
+
 /// Resolves #include "x" against the folder of the including file, then against shaders/.
 class Includer : public glslang::TShader::Includer {
  public:
-  explicit Includer(std::filesystem::path root) : root_(std::move(root)) {}
+  Includer(std::filesystem::path root, const Defines& defines)
+      : root_(std::move(root)), defines_(defines) {}
 
-  IncludeResult* includeLocal(const char* name, const char* includer, std::size_t) override {
+  IncludeResult* includeLocal(const char* written, const char* includer, std::size_t) override {
+    const std::string name = includedName(written, defines_);
     for (const auto& folder : {(root_ / includer).parent_path(), root_}) {
       const auto path = folder / name;
       if (!isFile(path)) continue;
@@ -78,6 +86,7 @@ class Includer : public glslang::TShader::Includer {
 
  private:
   std::filesystem::path root_;
+  const Defines& defines_;
 };
 
 EShLanguage stageOf(const std::string& path) {
@@ -90,7 +99,7 @@ EShLanguage stageOf(const std::string& path) {
 
 /// The text of `path` and of everything it includes, in order of first appearance.
 void collect(const std::filesystem::path& root, const std::filesystem::path& path,
-             std::set<std::string>& seen, std::string& text) {
+             const Defines& defines, std::set<std::string>& seen, std::string& text) {
   if (!seen.insert(path.lexically_normal().string()).second) return;
   const std::string content = readTextFile(path);
   text += content;
@@ -98,10 +107,11 @@ void collect(const std::filesystem::path& root, const std::filesystem::path& pat
   for (std::string line; std::getline(lines, line);) {
     const auto open = line.find('"');
     if (line.rfind("#include", 0) != 0 || open == std::string::npos) continue;
-    const std::string name = line.substr(open + 1, line.find('"', open + 1) - open - 1);
+    const std::string name =
+        includedName(line.substr(open + 1, line.find('"', open + 1) - open - 1), defines);
     for (const auto& folder : {path.parent_path(), root})
       if (isFile(folder / name)) {
-        collect(root, folder / name, seen, text);
+        collect(root, folder / name, defines, seen, text);
         break;
       }
   }
@@ -137,7 +147,7 @@ std::string ShaderLibrary::hash(const std::string& path, const Defines& defines)
   const auto version = glslang::GetVersion();
   everything += fmt::format("glslang {}.{}.{}\n", version.major, version.minor, version.patch);
   std::set<std::string> seen;
-  collect(root_, root_ / path, seen, everything);
+  collect(root_, root_ / path, defines, seen, everything);
   return imageHash(std::as_bytes(std::span(everything)));
 }
 
@@ -166,18 +176,19 @@ std::vector<std::uint32_t> ShaderLibrary::compile(const std::string& path, const
     std::memcpy(words.data(), bytes->data(), bytes->size());
     return words;
   }
-  std::vector<std::uint32_t> words = compileAnew(path, preamble_ + definitionLines(defines), label);
+  std::vector<std::uint32_t> words = compileAnew(path, defines, label);
   writeCached(cached, hash,
               {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
   return words;
 }
 
 std::vector<std::uint32_t> ShaderLibrary::compileAnew(const std::string& path,
-                                                      const std::string& head,
+                                                      const Defines& defines,
                                                       const std::string& label) const {
   static std::once_flag once;
   std::call_once(once, [] { glslang::InitializeProcess(); });
   const EShLanguage stage = stageOf(path);
+  const std::string head = preamble_ + definitionLines(defines);
   const std::string text = readTextFile(root_ / path);
   glslang::TShader shader(stage);
   const char* source = text.c_str();
@@ -187,7 +198,7 @@ std::vector<std::uint32_t> ShaderLibrary::compileAnew(const std::string& path,
   shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-  Includer includer(root_);
+  Includer includer(root_, defines);
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules);
   glslang::TProgram program;
   bool good = shader.parse(GetDefaultResources(), 460, false, messages, includer);

@@ -8,7 +8,8 @@
 
 namespace oitlab {
 
-/// Preprocessor definitions of a shader variant: name -> value.
+/// Preprocessor definitions of a shader variant: name -> value. Values have no spaces. #include
+/// "NAME" includes the file that the definition NAME names, relative to the folder shaders/.
 using Defines = std::map<std::string, std::string>;
 
 /// Compiles GLSL to SPIR-V when a pipeline is made, so that an edited shader needs no rebuild of
@@ -54,8 +55,8 @@ class ShaderLibrary {
  private:
   std::string hash(const std::string& path, const Defines& defines) const;
 
-  /// `head` precedes the text; `label` names the variant in messages.
-  std::vector<std::uint32_t> compileAnew(const std::string& path, const std::string& head,
+  /// `label` names the variant in messages.
+  std::vector<std::uint32_t> compileAnew(const std::string& path, const Defines& defines,
                                          const std::string& label) const;
 
   std::filesystem::path root_;

@@ -1,5 +1,6 @@
 #include "method/method.h"
 
+#include "method/make_source.h"
 #include "util/check.h"
 #include "util/error.h"
 #include "util/suggest.h"
@@ -54,6 +55,8 @@ const MethodInfo& findMethod(const std::string& name) {
 }
 
 RegisterMethod::RegisterMethod(MethodInfo info) {
+  if (info.takesFragments)
+    for (Parameter& parameter : sourceParameters()) info.parameters.push_back(std::move(parameter));
   const bool isNew = registry().emplace(info.name, info).second;
   OITLAB_CHECK(isNew);
 }

@@ -65,6 +65,8 @@ struct MethodInfo {
   bool exact = false;   ///< claims the exact image
   std::vector<Parameter> parameters;
   std::vector<std::string> features;  ///< Vulkan features it needs beyond the baseline
+  /// It takes fragments from a source (makeSource()), and gets the parameters of one.
+  bool takesFragments = false;
   std::function<std::unique_ptr<Method>(const MethodContext&)> make;
 
   /// The features that `device` lacks for this method; empty when the method can run there.

@@ -36,7 +36,8 @@ void BlockLists::makePrograms(bool hasUnsnapped) {
                           {"KEY", std::to_string(options_.key)},
                           {"FIRST_LIST", std::to_string(options_.longestShort) + "u"},
                           {"SHORT_TEAMS", std::to_string(options_.shortTeams) + "u"},
-                          {"MEDIUM_TEAMS", std::to_string(options_.mediumTeams) + "u"}};
+                          {"MEDIUM_TEAMS", std::to_string(options_.mediumTeams) + "u"},
+                          {"COUNT_ALL", options_.countAll ? "1" : "0"}};
   auto pass = [&](const char* name) {
     return LazyPipeline([&device = device_, defines = with(common, {{"PASS", name}})] {
       return Pipeline::compute(device, "raster/blocks/blocks.comp", defines);

@@ -20,6 +20,7 @@ class BlockLists {
     std::uint32_t shortTeams = 1, mediumTeams = 1;
     /// Of the counters, which begin with BlockCounters. What is behind is the method's own.
     std::uint64_t counterBytes = sizeof(BlockCounters);
+    bool countAll = false;  ///< count the dispatches over lists of all kinds, too
   };
 
   /// As FrontEnd.

@@ -1,6 +1,8 @@
 #include "render/depth_complexity.h"
 
 #include "depth/count.h"
+#include "source/compute_source.h"
+#include "source/hardware_source.h"
 #include "util/check.h"
 #include "util/error.h"
 
@@ -10,26 +12,32 @@ namespace {
 /// A method, because a Renderer renders methods. It is not registered, because it makes no image.
 class FragmentCounter : public Method {
  public:
-  FragmentCounter(const Device& device, const Target& target)
-      : pipeline_(Pipeline::graphics(
-            device, {.fragmentShader = "depth/count.frag", .depthFormat = Target::depthFormat})),
+  FragmentCounter(const Device& device, const GpuScene& scene, const Target& target,
+                  bool byHardware)
+      : source_(makeSource(device, scene, target, byHardware)),
+        pass_(
+            source_->make({.file = "depth/count.glsl", .access = Access::none, .needsId = false})),
         counts_(device, unlisted_, "fragment counts", bytesFor(target)),
         readback_(device, unlisted_, "counts readback", bytesFor(target), BufferKind::readback) {}
 
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
+    const CountPush push{source_->begin(frame), counts_.address()};
     fillBuffer(frame.commands, counts_, 0);
-    frame.barrier(Stage::eTransfer, Stage::eFragmentShader);
-    frame.renderDepthTested({}, [&] {
-      frame.bind(pipeline_, CountPush{frame.constants, counts_.address()});
-      frame.drawTransparent();
-    });
-    frame.barrier(Stage::eFragmentShader, Stage::eTransfer);
+    frame.barrier(Stage::eTransfer, source_->stages());
+    source_->run(frame, "count", pass_, push);
+    frame.barrier(source_->stages(), Stage::eTransfer);
     frame.commands.copyBuffer(counts_.vk(), readback_.vk(), vk::BufferCopy(0, 0, counts_.bytes()));
     frame.barrier(Stage::eTransfer, Stage::eHost);
+    source_->end(frame);
   }
 
-  Status status() override { return {}; }
+  Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
+    Status status;
+    source_->addCounters(status.counters);  // fails where fragments were lost
+    return status;
+  }
 
   std::vector<std::uint32_t> counts() const {
     const auto mapped = readback_.mapped<std::uint32_t>();
@@ -41,8 +49,16 @@ class FragmentCounter : public Method {
     return target.pixels() * sizeof(std::uint32_t);
   }
 
+  std::unique_ptr<FragmentSource> makeSource(const Device& device, const GpuScene& scene,
+                                             const Target& target, bool byHardware) {
+    if (byHardware) return std::make_unique<HardwareSource>(device, scene, target, unlisted_);
+    return std::make_unique<ComputeSource>(device, scene, target, unlisted_,
+                                           ComputeSource::Options{});
+  }
+
   MemoryLedger unlisted_;
-  Pipeline pipeline_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass pass_;
   Buffer counts_, readback_;
 };
 
@@ -68,12 +84,8 @@ double DepthComplexity::meanOfCovered() const {
   return covered == 0 ? 0 : double(total) / double(covered);
 }
 
-DepthComplexity countFragments(Renderer& renderer, const Camera& camera) {
-  const Device& device = renderer.device();
-  if (!device.info().has("fragmentStoresAndAtomics"))
-    fail<DeviceError>("fragments cannot be counted on {}: it lacks fragmentStoresAndAtomics",
-                      device.info().name);
-  FragmentCounter counter(device, renderer.target());
+DepthComplexity countFragments(Renderer& renderer, const Camera& camera, bool byHardware) {
+  FragmentCounter counter(renderer.device(), renderer.scene(), renderer.target(), byHardware);
   renderer.render(counter, camera);
   return {renderer.target().width(), renderer.target().height(), counter.counts()};
 }

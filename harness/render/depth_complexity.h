@@ -28,6 +28,6 @@ struct DepthComplexity {
 
 /// Counts in one frame of the renderer's scene and target. The target's colour is then that of the
 /// opaque surfaces. Throws DeviceError when the device fails or cannot count in fragment shaders.
-DepthComplexity countFragments(Renderer& renderer, const Camera& camera);
+DepthComplexity countFragments(Renderer& renderer, const Camera& camera, bool byHardware = true);
 
 }  // namespace oitlab

@@ -12,7 +12,7 @@
 // otherwise.
 #include "abuffer/options.h"
 #include "abuffer/sort_passes.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "util/error.h"
 #include "util/rounding.h"
 
@@ -28,6 +28,8 @@ class Abuffer : public Method {
         options_(context.parameters, device_.info(), formatName(context.target.format())),
         lists_(device_, context.memory, options_, context.target.pixels()),
         stencil_(makeStencil(context)),
+        source_(makeSource(context)),
+        isHardware_(isHardware(context.parameters)),
         sorts_(device_, options_, stencil_.extent().width > 0 ? &stencil_ : nullptr) {
     makeCapture();
     if (!options_.truncate) deep_ = Pipeline::compute(device_, "abuffer/deep.comp", options_.nodes);
@@ -36,13 +38,17 @@ class Abuffer : public Method {
     tally_ = Pipeline::compute(device_, "abuffer/tally.comp", options_.nodes);
   }
 
+  bool finishesTarget() const override { return source_->finishesTarget(); }
+
   void record(const Frame& frame) override {
     counted_ = frame.instrumented;
+    const std::uint64_t constants = source_->begin(frame);
     frame.stage("clear", [&] {
       lists_.clear(frame);
       frame.barrier(Stage::eTransfer, Stage::eFragmentShader | Stage::eComputeShader);
     });
     Push push = lists_.push(frame);
+    push.frame = constants;
     capture(frame, push);
     sorts_.record(frame, lists_, push);
     const auto shaders = Stage::eFragmentShader | Stage::eComputeShader;
@@ -51,9 +57,11 @@ class Abuffer : public Method {
     if (options_.byInterval()) frame.stage("composite", [&] { pixels(frame, composite_, push); });
     if (frame.instrumented) frame.stage("tally", [&] { pixels(frame, tally_, push); });
     recordReadback(frame.commands, {&lists_.counters()}, shaders);
+    source_->end(frame);
   }
 
   Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
     const Counters c = lists_.counters().read<Counters>();
     bool again = false;
     if (c.fragments > lists_.capacity() && !options_.drop) {
@@ -77,7 +85,10 @@ class Abuffer : public Method {
           "abuffer: the lists of {} pixels do not end as lists do, or {} does not carry out the "
           "shaders' loops in full (a pixel may be too deep for it)",
           c.broken, device_.info().name);
-    return {.counters = countersOf(c)};
+    Status status{.counters = countersOf(c)};
+    source_->addCounters(status.counters);
+    status.counters["fragments"] = c.fragments;
+    return status;
   }
 
  private:
@@ -101,44 +112,36 @@ class Abuffer : public Method {
   }
 
   void makeCapture() {
-    Pipeline::Graphics description{.fragmentShader = "abuffer/capture.frag",
-                                   .defines = options_.nodes,
-                                   .depthFormat = Target::depthFormat};
-    if (options_.counts()) description.defines.emplace("COUNTS", "1");
+    FragmentProgram program{
+        .file = "abuffer/capture.glsl", .access = Access::none, .defines = options_.nodes};
+    if (options_.counts()) program.defines.emplace("COUNTS", "1");
     if (options_.stencilCounts()) {
-      const vk::Format format = stencil_.description().format;
-      description.depthFormat = description.stencilFormat = format;
+      if (!isHardware_)
+        fail<InputError>(
+            "abuffer: mask=stencil_increment counts with the stencil of the hardware rasterizer; "
+            "with source=compute take another mask");
+      program.depthStencilFormat = stencil_.description().format;
       using Operation = vk::StencilOp;
-      description.stencil =
-          vk::StencilOpState(Operation::eKeep, Operation::eIncrementAndClamp, Operation::eKeep,
-                             vk::CompareOp::eAlways, 0xff, 0xff, 0);
+      program.stencil = vk::StencilOpState(Operation::eKeep, Operation::eIncrementAndClamp,
+                                           Operation::eKeep, vk::CompareOp::eAlways, 0xff, 0xff, 0);
       copyDepth_ = Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
                                                 .fragmentShader = "abuffer/copy_depth.frag",
-                                                .depthFormat = format,
+                                                .depthFormat = program.depthStencilFormat,
                                                 .depthWrite = true,
                                                 .depthCompare = vk::CompareOp::eAlways,
-                                                .stencilFormat = format});
+                                                .stencilFormat = program.depthStencilFormat});
     }
-    capture_ = Pipeline::graphics(device_, description);
+    capture_ = source_->make(program);
   }
 
   void capture(const Frame& frame, const Push& push) {
-    const auto tests = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
-    const auto draw = [&] {
-      frame.bind(capture_, push);
-      if (options_.stencilCounts())
-        frame.commands.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, 0);
-      frame.drawTransparent();
-    };
     if (options_.stencilCounts()) frame.stage("copy depth", [&] { copyDepth(frame); });
-    frame.stage("capture", [&] {
-      if (options_.stencilCounts())
-        frame.renderOnDepthStencil(stencil_, vk::AttachmentLoadOp::eLoad, draw);
-      else
-        frame.renderDepthTested({}, draw);
-      frame.barrier(Stage::eFragmentShader | tests,
-                    Stage::eFragmentShader | Stage::eComputeShader | tests);
-    });
+    FragmentRun run;
+    if (options_.stencilCounts()) run.depthStencil = &stencil_;
+    source_->run(frame, "capture", capture_, push, run);
+    const auto tests = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+    frame.barrier(source_->stages() | tests,
+                  Stage::eFragmentShader | Stage::eComputeShader | tests);
   }
 
   void copyDepth(const Frame& frame) const {
@@ -196,8 +199,11 @@ class Abuffer : public Method {
   Options options_;
   ListMemory lists_;
   GpuImage stencil_;
+  std::unique_ptr<FragmentSource> source_;
+  bool isHardware_;
   SortPasses sorts_;
-  Pipeline copyDepth_, capture_, deep_, composite_, tally_;
+  FragmentPass capture_;
+  Pipeline copyDepth_, deep_, composite_, tally_;
   std::uint32_t rounds_ = 0;  // dispatches that the sort of deep pixels is spread over
   bool counted_ = false;      // the last frame was an instrumented one
 };
@@ -208,7 +214,8 @@ const RegisterMethod registered({
     .source = "Knowles, Leach, Zambetta 2013, Backwards Memory Allocation and Improved OIT",
     .exact = true,
     .parameters = declareParameters(),
-    .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
+    .features = {"fragmentStoresAndAtomics"},
+    .takesFragments = true,
     .make = makeMethod<Abuffer>,
 });
 

@@ -1,10 +1,9 @@
-// Hardware alpha blending, the baseline of all measurements. It is exact only where triangles
-// happen to be submitted back to front.
+// Alpha blending, the baseline of all measurements. It is exact only where triangles happen to be
+// submitted back to front.
 #include "blend/sort_types.h"
 
-#include "frame/sample_counter.h"
 #include "gpu/radix_sort.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "util/rounding.h"
 
 namespace oitlab::blend {
@@ -13,20 +12,26 @@ namespace oitlab::blend {
 /// Triangles at equal distances stay in the order of submission.
 class CentroidSort {
  public:
-  /// The scene must have at least one transparent triangle.
-  CentroidSort(const Device& device, MemoryLedger& memory, const GpuScene& scene)
+  /// The scene must have at least one transparent triangle. `sequenced`: sequence() is wanted.
+  CentroidSort(const Device& device, MemoryLedger& memory, const GpuScene& scene, bool sequenced)
       : count_(scene.transparentCount()),
         keys_(Pipeline::compute(device, "blend/centroid_keys.comp")),
         gather_(Pipeline::compute(device, "blend/gather_indices.comp")),
         sort_(device, memory, count_),
-        indices_(device, memory, "sorted indices", 12ull * count_) {}
+        indices_(device, memory, "sorted indices", 12ull * count_) {
+    if (sequenced)
+      sequence_ = Buffer(device, memory, "places of triangles in the order",
+                         4ull * scene.scene().triangles.size());
+  }
 
-  /// Writes the vertex indices of the sorted triangles to indices().
+  /// Writes the vertex indices of the sorted triangles to indices(), and for each primitive id its
+  /// place in the order to sequence().
   void record(const Frame& frame) const {
     using Stage = vk::PipelineStageFlagBits2;
     const CentroidPush push{.frame = frame.constants,
                             .submitted = frame.scene.transparentIndices().address(),
                             .sorted = indices_.address(),
+                            .sequence = sequence_.address(),
                             .keys = sort_.keys().address(),
                             .values = sort_.values().address(),
                             .eye = frame.camera.eye,
@@ -39,66 +44,65 @@ class CentroidSort {
     frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
     sort_.record(frame.commands);
     step(gather_);
-    frame.barrier(Stage::eComputeShader, Stage::eIndexInput);
+    frame.barrier(Stage::eComputeShader, Stage::eIndexInput | Stage::eComputeShader);
   }
 
   const Buffer& indices() const { return indices_; }
+  const Buffer& sequence() const { return sequence_; }
 
  private:
   std::uint32_t count_;  // triangles
   Pipeline keys_, gather_;
   RadixSort sort_;
-  Buffer indices_;
+  Buffer indices_, sequence_;
 };
 
 class Blend : public Method {
  public:
   explicit Blend(const MethodContext& context)
-      : pipeline_(Pipeline::graphics(context.device,
-                                     {.fragmentShader = "blend/blend.frag",
-                                      .colorFormats = {vulkanFormat(context.target.format())},
-                                      .depthFormat = Target::depthFormat,
-                                      .blends = {straightOver()}})),
-        samples_(context.device) {
+      : source_(makeSource(context, true)),
+        pass_(source_->make(
+            {.file = "blend/blend.glsl", .access = Access::blended, .needsId = false})) {
     if (context.parameters.choice("order") == "sorted" && context.scene.transparentCount() > 0)
-      sort_.emplace(context.device, context.memory, context.scene);
+      sort_.emplace(context.device, context.memory, context.scene, !isHardware(context.parameters));
   }
+
+  bool finishesTarget() const override { return source_->finishesTarget(); }
 
   void record(const Frame& frame) override {
+    Submission submission;
     // In every frame, even if the camera does not move, as an application with a moving one would.
-    if (sort_) frame.stage("sort", [&] { sort_->record(frame); });
-    samples_.reset(frame);
-    frame.stage("blend", [&] {
-      frame.renderOnTarget([&] {
-        samples_.count(frame, [&] {
-          frame.bind(pipeline_, frame.constants);
-          if (sort_) {
-            frame.commands.bindIndexBuffer(sort_->indices().vk(), 0, vk::IndexType::eUint32);
-            frame.commands.drawIndexed(frame.scene.transparentCount() * 3, 1, 0, 0, 0);
-          } else {
-            frame.drawTransparent();
-          }
-        });
-      });
-    });
+    if (sort_) {
+      frame.stage("sort", [&] { sort_->record(frame); });
+      submission = {.indices = &sort_->indices(), .sequence = &sort_->sequence()};
+    }
+    const std::uint64_t push = source_->begin(frame, submission);
+    source_->run(frame, "blend", pass_, push);
+    source_->end(frame);
   }
 
-  Status status() override { return {.counters = samples_.counters()}; }
+  Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
+    Status status;
+    source_->addCounters(status.counters);
+    return status;
+  }
 
  private:
-  Pipeline pipeline_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass pass_;
   std::optional<CentroidSort> sort_;
-  SampleCounter samples_;
 };
 
 const RegisterMethod registered({
     .name = "blend",
-    .summary = "hardware alpha blending: fast, and wrong where triangles overlap out of order",
+    .summary = "alpha blending: fast, and wrong where triangles overlap out of order",
     .source = "Porter and Duff 1984; fixed-function blending",
     .exact = false,
     .parameters = {choice("order", {"submission", "sorted"},
                           "submission: as the scene lists triangles; sorted: back to front by "
                           "distance of the centroid, sorted on the device in every frame")},
+    .takesFragments = true,
     .make = makeMethod<Blend>,
 });
 

@@ -9,7 +9,7 @@
 #include "depth_peeling/peel_types.h"
 
 #include "gpu/counters_buffer.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "util/error.h"
 #include "util/rounding.h"
 
@@ -27,6 +27,7 @@ class DepthPeeling : public Method {
         dual_(context.parameters.choice("mode") == "dual"),
         list_(dual_ && context.parameters.choice("back") == "list"),
         wide_(wantsWideAtomics(context.parameters.choice("atomics"))),
+        source_(makeSource(context)),
         counters_(device_, memory_, "counters", sizeof(PeelCounters)) {
     makePipelines(formatName(context.target.format()));
     const std::uint64_t pixels = context.target.pixels();
@@ -43,9 +44,11 @@ class DepthPeeling : public Method {
     allocateDraws();
   }
 
+  bool finishesTarget() const override { return source_->finishesTarget(); }
+
   void record(const Frame& frame) override {
     const vk::DeviceSize drawBytes = (recorded_ + 1) * sizeof(PassDraw);
-    PeelPush push{.frame = frame.constants,
+    PeelPush push{.frame = source_->begin(frame),
                   .front = front_.address(),
                   .back = back_.address(),
                   .heads = heads_.address(),
@@ -64,7 +67,7 @@ class DepthPeeling : public Method {
     });
     frame.stage("peel", [&] {
       for (push.pass = 0; push.pass < recorded_; ++push.pass) recordPass(frame, push);
-      frame.barrier(Stage::eFragmentShader, Stage::eComputeShader);
+      frame.barrier(source_->stages(), Stage::eComputeShader);
     });
     frame.stage("resolve", [&] {
       frame.bind(resolve_, push);
@@ -72,10 +75,12 @@ class DepthPeeling : public Method {
       recordReadback(frame.commands, {&counters_, &draws_},
                      Stage::eFragmentShader | Stage::eComputeShader);
     });
+    source_->end(frame);
     instrumented_ = frame.instrumented;
   }
 
   Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
     const PeelCounters counters = counters_.read<PeelCounters>();
     const auto draws = draws_.readAll<PassDraw>();
     std::uint32_t asked = 0;  // passes that were enabled, each by the one before it
@@ -113,7 +118,10 @@ class DepthPeeling : public Method {
       counted_["fragments"] = counters.fragments;
       counted_["missed_fragments"] = counters.missed;
     }
-    return {.counters = counted_};
+    Status status;
+    source_->addCounters(status.counters);
+    for (const auto& [name, value] : counted_) status.counters[name] = value;
+    return status;
   }
 
  private:
@@ -130,9 +138,10 @@ class DepthPeeling : public Method {
     if (dual_ && !list_) defines["BACK_BLEND"] = "1";
     if (wide_) defines["WIDE_ATOMICS"] = "1";
     const auto geometry = [&](const Defines& with) {
-      return Pipeline::graphics(device_, {.fragmentShader = "depth_peeling/peel.frag",
-                                          .defines = with,
-                                          .depthFormat = Target::depthFormat});
+      return source_->make({.file = "depth_peeling/peel.glsl",
+                            .access = Access::none,
+                            .defines = with,
+                            .isConditional = true});
     };
     peel_ = geometry(defines);
     Defines resolve = defines;
@@ -165,27 +174,22 @@ class DepthPeeling : public Method {
     if (frame.instrumented) push.does |= PASS_COUNTS | (push.pass == 0 ? PASS_COUNTS_ALL : 0);
     push.peeled = keys_[push.pass % 3].address();
     push.next = keys_[(push.pass + 1) % 3].address();
-    frame.barrier(Stage::eFragmentShader | Stage::eTransfer,
-                  Stage::eFragmentShader | Stage::eTransfer | Stage::eDrawIndirect);
+    const auto stages = source_->stages();
+    frame.barrier(stages | Stage::eTransfer, stages | Stage::eTransfer | Stage::eDrawIndirect);
     // Clears the buffer of the pass after this one while this one draws: a third buffer saves a
     // wait.
     fillBuffer(frame.commands, keys_[(push.pass + 2) % 3], 0);
     draw(frame, peel_, push, push.pass);
     if (wide_ || last) return;
-    frame.barrier(Stage::eFragmentShader, Stage::eFragmentShader | Stage::eDrawIndirect);
+    frame.barrier(stages, stages | Stage::eDrawIndirect);
     draw(frame, ties_, push, push.pass + 1);
   }
 
-  /// Draws all transparent triangles, if pass `asked` is enabled.
-  void draw(const Frame& frame, const Pipeline& pipeline, const PeelPush& push,
-            std::uint32_t asked) const {
-    frame.renderDepthTested({}, [&] {
-      frame.bind(pipeline, push);
-      frame.commands.bindIndexBuffer(frame.scene.transparentIndices().vk(), 0,
-                                     vk::IndexType::eUint32);
-      frame.commands.drawIndexedIndirect(draws_.vk(), asked * sizeof(PassDraw), 1,
-                                         sizeof(PassDraw));
-    });
+  /// Goes through all transparent fragments, if pass `asked` is enabled.
+  void draw(const Frame& frame, FragmentPass pass, PeelPush push, std::uint32_t asked) const {
+    push.asked = asked;
+    source_->run(frame, "", pass, push,
+                 {.draw = draws_.vk(), .drawOffset = asked * sizeof(PassDraw)});
   }
 
   /// One command per recorded pass, and one for the pass that the last one may enable.
@@ -214,7 +218,9 @@ class DepthPeeling : public Method {
   bool instrumented_ = false;
   std::uint32_t recorded_ = 0;  // passes
   std::uint32_t capacity_ = 0;  // nodes of the back list
-  Pipeline peel_, ties_, resolve_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass peel_, ties_;
+  Pipeline resolve_;
   std::array<Buffer, 3> keys_;  // in rotation: blended, found, cleared
   Buffer front_, back_, heads_, listed_, drawTemplate_;
   CountersBuffer counters_, draws_;
@@ -236,7 +242,7 @@ const RegisterMethod registered({
                 "or blended at once as published, which rounds otherwise"),
          choice("atomics", {"auto", "int64", "int32"},
                 "on keys of depth and primitive id; int32 takes a second pass a layer for the id")},
-    .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
+    .takesFragments = true,
     .make = makeMethod<DepthPeeling>,
 });
 

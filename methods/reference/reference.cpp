@@ -4,7 +4,7 @@
 #include "reference/lists.h"
 
 #include "gpu/counters_buffer.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "util/error.h"
 #include "util/rounding.h"
 
@@ -15,8 +15,8 @@ class Reference : public Method {
   explicit Reference(const MethodContext& context)
       : device_(context.device),
         memory_(context.memory),
-        capture_(Pipeline::graphics(device_, {.fragmentShader = "reference/capture.frag",
-                                              .depthFormat = Target::depthFormat})),
+        source_(makeSource(context)),
+        capture_(source_->make({.file = "reference/capture.glsl", .access = Access::none})),
         resolve_(Pipeline::compute(device_, "reference/resolve.comp",
                                    {{"TARGET_FORMAT", formatName(context.target.format())}})),
         heads_(device_, memory_, "list heads", context.target.pixels() * sizeof(std::uint32_t)),
@@ -26,9 +26,11 @@ class Reference : public Method {
     allocateNodes(std::uint64_t(double(context.target.pixels()) * depth) + 1);
   }
 
+  bool finishesTarget() const override { return source_->finishesTarget(); }
+
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
-    ListPush push{frame.constants,
+    ListPush push{source_->begin(frame),
                   nodes_.address(),
                   heads_.address(),
                   counters_.address(),
@@ -39,15 +41,10 @@ class Reference : public Method {
     frame.stage("clear", [&] {
       fillBuffer(frame.commands, heads_, LIST_END);
       fillBuffer(frame.commands, counters_.buffer(), 0);
-      frame.barrier(Stage::eTransfer, Stage::eFragmentShader);
+      frame.barrier(Stage::eTransfer, source_->stages());
     });
-    frame.stage("capture", [&] {
-      frame.renderDepthTested({}, [&] {
-        frame.bind(capture_, push);
-        frame.drawTransparent();
-      });
-      frame.barrier(Stage::eFragmentShader, Stage::eComputeShader);
-    });
+    source_->run(frame, "capture", capture_, push);
+    frame.barrier(source_->stages(), Stage::eComputeShader);
     frame.stage("resolve", [&] {
       for (push.round = 0; push.round < rounds_; ++push.round) {
         if (push.round > 0) frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
@@ -56,9 +53,11 @@ class Reference : public Method {
       }
       recordReadback(frame.commands, {&counters_});
     });
+    source_->end(frame);
   }
 
   Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
     const ListCounters counters = counters_.read<ListCounters>();
     if (counters.fragments > capacity_) {
       allocateNodes(withSlack(counters.fragments));
@@ -74,9 +73,12 @@ class Reference : public Method {
           "reference: {} fragments were captured and {} blended: {} does not carry out "
           "the shader's loops in full (a pixel may be too deep for it)",
           counters.fragments, counters.resolved, device_.info().name);
-    return {.counters = {{"fragments", counters.fragments},
-                         {"max_fragments_per_pixel", counters.deepest},
-                         {"covered_pixels", counters.coveredPixels}}};
+    Status status;
+    source_->addCounters(status.counters);
+    status.counters["fragments"] = counters.fragments;
+    status.counters["max_fragments_per_pixel"] = counters.deepest;
+    status.counters["covered_pixels"] = counters.coveredPixels;
+    return status;
   }
 
  private:
@@ -94,7 +96,9 @@ class Reference : public Method {
   MemoryLedger& memory_;
   std::uint32_t capacity_ = 0;  // nodes
   std::uint32_t rounds_ = 1;    // dispatches that the sort is spread over
-  Pipeline capture_, resolve_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass capture_;
+  Pipeline resolve_;
   Buffer nodes_, heads_, runs_;
   CountersBuffer counters_;
 };
@@ -107,7 +111,7 @@ const RegisterMethod registered({
     .parameters = {real("initial_depth", 4.0, 0.0, 1024.0,
                         "fragments a pixel that memory is first made for; it grows as needed",
                         "fragments")},
-    .features = {"fragmentStoresAndAtomics", "geometryShader"},  // gl_PrimitiveID in fragments
+    .takesFragments = true,
     .make = makeMethod<Reference>,
 });
 

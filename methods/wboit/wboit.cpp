@@ -1,8 +1,6 @@
 // Weighted blended OIT (McGuire and Bavoil 2013): one geometry pass and a composite, without
 // sorting and lists. Weights that decrease with depth approximate the order.
-#include "frame/frame_bindings.h"
-#include "frame/sample_counter.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "wboit/wboit_types.h"
 
 namespace oitlab::wboit {
@@ -10,77 +8,37 @@ namespace oitlab::wboit {
 class Wboit : public Method {
  public:
   explicit Wboit(const MethodContext& context)
-      : accumulated_(makeImage(context, "accumulated", accumulationFormat(context.parameters))),
-        revealage_(makeImage(context, "revealage", revealageFormat(context.parameters))),
-        bindings_(context.device, context.scene, context.target,
-                  std::array<const GpuImage*, 2>{&accumulated_, &revealage_}),
-        accumulate_(makeAccumulate(context)),
-        composite_(Pipeline::graphics(context.device,
-                                      {.vertexShader = "common/fullscreen.vert",
-                                       .fragmentShader = "wboit/composite.frag",
-                                       .colorFormats = {vulkanFormat(context.target.format())},
-                                       .depthFormat = Target::depthFormat,
-                                       .depthTest = false,
-                                       .blends = {premultipliedOver()}})),
-        samples_(context.device),
+      : source_(makeSource(context)),
+        pass_(source_->make(program(context.parameters))),
         depthScale_(context.parameters.real("depth_scale")),
         paperRange_(rangeOf(context.parameters.choice("weight"))) {}
 
+  bool finishesTarget() const override { return source_->finishesTarget(); }
+
   void record(const Frame& frame) override {
-    using Stage = vk::PipelineStageFlagBits2;
-    using Access = vk::AccessFlagBits2;
-    using Layout = vk::ImageLayout;
-    const WboitPush push = pushFor(frame);
-    samples_.reset(frame);
-    frame.stage("accumulate", [&] {
-      for (const GpuImage* image : {&accumulated_, &revealage_})
-        image->transition(frame.commands, Layout::eUndefined, Layout::eColorAttachmentOptimal,
-                          Stage::eAllCommands, Access::eMemoryWrite, Stage::eColorAttachmentOutput,
-                          Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
-      const std::array attachments = {clearedAttachment(accumulated_, {0.0f, 0.0f, 0.0f, 0.0f}),
-                                      clearedAttachment(revealage_, {1.0f, 0.0f, 0.0f, 0.0f})};
-      frame.renderDepthTested(attachments, [&] {
-        samples_.count(frame, [&] {
-          frame.bind(accumulate_, push);
-          frame.drawTransparent();
-        });
-      });
-    });
-    frame.stage("composite", [&] {
-      for (const GpuImage* image : {&accumulated_, &revealage_})
-        image->transition(frame.commands, Layout::eColorAttachmentOptimal,
-                          Layout::eShaderReadOnlyOptimal, Stage::eColorAttachmentOutput,
-                          Access::eColorAttachmentWrite, Stage::eFragmentShader,
-                          Access::eShaderRead);
-      frame.renderOnTarget([&] {
-        composite_.bind(frame.commands, bindings_.set());
-        frame.drawFullscreen();
-      });
-    });
+    WboitPush push = pushFor(frame);
+    push.frame = source_->begin(frame);
+    source_->run(frame, "accumulate", pass_, push);
+    source_->end(frame);
   }
 
-  Status status() override { return {.counters = samples_.counters()}; }
+  Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
+    Status status;
+    source_->addCounters(status.counters);
+    return status;
+  }
 
  private:
-  static GpuImage makeImage(const MethodContext& context, const char* name, vk::Format format) {
-    using Usage = vk::ImageUsageFlagBits;
-    const auto [width, height] = context.target.color().extent();
-    return {context.device,
-            context.memory,
-            {name, format, width, height, 1, Usage::eColorAttachment | Usage::eSampled}};
-  }
-
-  Pipeline makeAccumulate(const MethodContext& context) const {
-    const std::string& weight = context.parameters.choice("weight");
-    const std::string equation = weight == "none" ? "0" : weight.substr(2);
-    using Factor = vk::BlendFactor;
-    return Pipeline::graphics(
-        context.device,
-        {.fragmentShader = "wboit/accumulate.frag",
-         .defines = {{"WEIGHT", equation}},
-         .colorFormats = {accumulated_.description().format, revealage_.description().format},
-         .depthFormat = Target::depthFormat,
-         .blends = {additive(), blending(Factor::eZero, Factor::eOneMinusSrcColor)}});
+  static FragmentProgram program(const Parameters& parameters) {
+    const std::string& weight = parameters.choice("weight");
+    return {.file = "wboit/wboit.glsl",
+            .access = Access::blended,
+            .defines = {{"WEIGHT", weight == "none" ? "0" : weight.substr(2)}},
+            .sums = {{accumulationFormat(parameters), glm::vec4(0), COMBINE_ADD, "accumulated"},
+                     {revealageFormat(parameters), glm::vec4(1, 0, 0, 0), COMBINE_ATTENUATE,
+                      "revealage"}},
+            .needsId = false};
   }
 
   static vk::Format accumulationFormat(const Parameters& parameters) {
@@ -108,10 +66,8 @@ class Wboit : public Method {
     return {frame.constants, scale, nearest, farthest};
   }
 
-  GpuImage accumulated_, revealage_;
-  FrameBindings bindings_;
-  Pipeline accumulate_, composite_;
-  SampleCounter samples_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass pass_;
   double depthScale_;
   float paperRange_;
 };
@@ -121,16 +77,17 @@ const RegisterMethod registered({
     .summary = "weighted blended: one pass, no sorting; exact for one layer, else an estimate",
     .source = "McGuire and Bavoil 2013, Weighted Blended Order-Independent Transparency, JCGT 2:2",
     .exact = false,
-    .parameters = {choice("weight", {"eq7", "eq8", "eq9", "eq10", "none"},
-                          "weight function by its equation in the paper; none: all layers alike"),
-                   real(
-                       "depth_scale", 0.0, 0.0, 1e6,
-                       "factor from scene units to the depths (to 200) of equations 7 to 9; 0: the "
-                       "scene's farthest point is at 200"),
-                   choice("accum_format", {"rgba16f", "rgba32f"}, "of the weighted sums"),
-                   choice("reveal_format", {"r16f", "r8", "r32f"},
-                          "of the product of (1 - alpha); the paper has r8 beside r16f")},
-    .features = {"independentBlend"},
+    .parameters =
+        {choice("weight", {"eq7", "eq8", "eq9", "eq10", "none"},
+                "weight function by its equation in the paper; none: all layers alike"),
+         real("depth_scale", 0.0, 0.0, 1e6,
+              "factor from scene units to the depths (to 200) of equations 7 to 9; 0: the "
+              "scene's farthest point is at 200"),
+         choice("accum_format", {"rgba16f", "rgba32f"},
+                "of the weighted sums; source=compute has them in registers, as float32"),
+         choice("reveal_format", {"r16f", "r8", "r32f"},
+                "of the product of (1 - alpha); the paper has r8 beside r16f; as accum_format")},
+    .takesFragments = true,
     .make = makeMethod<Wboit>,
 });
 

@@ -12,6 +12,7 @@ struct CentroidPush {
   ADDRESS_OF(FrameBuffer) frame;
   ADDRESS_OF(SortBuffer) submitted;  // vertex indices, three a triangle, as submitted
   ADDRESS_OF(SortBuffer) sorted;     // the same, back to front
+  ADDRESS_OF(SortBuffer) sequence;   // by primitive id: the place in `sorted`; null: not wanted
   ADDRESS_OF(SortBuffer) keys;
   ADDRESS_OF(SortBuffer) values;  // places in the submission
   vec3 eye;

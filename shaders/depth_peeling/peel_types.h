@@ -67,6 +67,7 @@ struct PeelPush {
   ADDRESS_OF(CounterBuffer) counters;
   uint capacity;  // of listed
   uint pass;      // 0 only finds
+  uint asked;     // the pass of `draws` that asks for this one
   uint does;      // PASS_*
 };
 

@@ -21,6 +21,10 @@ namespace oitlab::raster {
 #define SHORT_LIST 64u
 #define MEDIUM_LIST 512u
 
+// The longest list that a subgroup sorts at once. Longer ones are sorted in runs of this length, which are merged.
+#define SORTED_RUN 1024u
+#define MERGE_GROUP 256u  // elements of a workgroup of order_merge.comp
+
 // Passes of blocks.comp.
 #define COUNT_AND_WRITE_LOW 0
 #define COUNT_HIGH 1
@@ -72,9 +76,13 @@ struct BlockCounters {
   uint cached;                              // by segments of high bins; more than the capacity means overflow
   uint overflow;                            // 1: some list does not fit, so that none may be read
   uint longest;                             // tri-half-blocks of the longest list
-  uint longItems;                           // of all long lists
   Dispatch shortGroups, mediumGroups;       // one workgroup per SHORT_TEAMS or MEDIUM_TEAMS half-blocks
   Dispatch longGroups;                      // one workgroup per half-block
+  // With COUNT_ALL:
+  uint allLists;
+  Dispatch allGroups;                       // one workgroup per SHORT_TEAMS half-blocks, of any kind
+  Dispatch runGroups;                       // x: runs of the longest list, y: long lists
+  Dispatch mergeGroups;                     // x: MERGE_GROUP elements each of the longest list, y: long lists
 };
 
 #ifndef __cplusplus

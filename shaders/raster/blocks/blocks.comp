@@ -27,7 +27,7 @@ shared uint cachedPlaces[CACHE_SIZE];  // half-block, triangle of the segment, p
 
 shared uint counts[HALF_BLOCKS], starts[HALF_BLOCKS], cursors[HALF_BLOCKS], lengths[HALF_BLOCKS];
 shared uint cached, cachedFirst, base, total;
-shared uint shortLists, mediumLists, longLists, longItems, firstShort, firstMedium, firstLong;
+shared uint shortLists, mediumLists, longLists, longest, firstShort, firstMedium, firstLong;
 shared uint last;
 
 ivec2 cornerIn(ivec2 region, uint block) {
@@ -106,10 +106,27 @@ uint halfBlocksOfFrame() {
   return grid.x * grid.y * HALF_BLOCKS;
 }
 
+#if COUNT_ALL
+// Dispatches over lists of all kinds.
+void countAll() {
+  const uint lists = shortLists + mediumLists + longLists;
+  if (lists == 0u) return;
+  const uint groups = (atomicAdd(push.counters.c.allLists, lists) + lists + SHORT_TEAMS - 1u) / SHORT_TEAMS;
+  atomicMax(push.counters.c.allGroups.x, min(groups, MAX_GROUPS));
+  atomicMax(push.counters.c.allGroups.y, (groups + MAX_GROUPS - 1u) / MAX_GROUPS);
+  if (longLists == 0u) return;
+  const uint rows = min(firstLong + longLists, MAX_GROUPS);
+  atomicMax(push.counters.c.runGroups.x, min((longest + SORTED_RUN - 1u) / SORTED_RUN, MAX_GROUPS));
+  atomicMax(push.counters.c.runGroups.y, rows);
+  atomicMax(push.counters.c.mergeGroups.x, min((longest + MERGE_GROUP - 1u) / MERGE_GROUP, MAX_GROUPS));
+  atomicMax(push.counters.c.mergeGroups.y, rows);
+}
+#endif
+
 // Allocates the lists of a bin, from `lengths` to `starts`. All invocations must call this.
 void makeLists(uint number) {
   const uint self = gl_LocalInvocationIndex;
-  if (self == 0u) shortLists = mediumLists = longLists = longItems = 0u;
+  if (self == 0u) shortLists = mediumLists = longLists = longest = 0u;
   barrier();
   uint rank = 0u, before = 0u;
   if (self < HALF_BLOCKS) {
@@ -119,8 +136,7 @@ void makeLists(uint number) {
     if (self == HALF_BLOCKS - 1u) total = before + length;
     if (length > MEDIUM_LIST) {
       rank = atomicAdd(longLists, 1u);
-      atomicAdd(longItems, length);
-      atomicMax(push.counters.c.longest, length);
+      atomicMax(longest, length);
     } else if (length > FIRST_LIST) rank = atomicAdd(mediumLists, 1u);
     else if (length > 0u) rank = atomicAdd(shortLists, 1u);
   }
@@ -132,7 +148,7 @@ void makeLists(uint number) {
     if (mediumLists > 0u) firstMedium = atomicAdd(push.counters.c.mediumLists, mediumLists);
     if (longLists > 0u) {
       firstLong = atomicAdd(push.counters.c.longLists, longLists);
-      atomicAdd(push.counters.c.longItems, longItems);
+      atomicMax(push.counters.c.longest, longest);
     }
     // Workgroups for all lists so far; the maximum over all bins remains.
     const uint ofShort = shortLists > 0u ? (firstShort + shortLists + SHORT_TEAMS - 1u) / SHORT_TEAMS : 0u;
@@ -141,6 +157,9 @@ void makeLists(uint number) {
     atomicMax(push.counters.c.shortGroups.y, (ofShort + MAX_GROUPS - 1u) / MAX_GROUPS);
     atomicMax(push.counters.c.mediumGroups.x, min(ofMedium, MAX_GROUPS));
     if (longLists > 0u) atomicMax(push.counters.c.longGroups.x, min(firstLong + longLists, MAX_GROUPS));
+#if COUNT_ALL
+    countAll();
+#endif
   }
   barrier();
   if (self < HALF_BLOCKS) {
@@ -242,6 +261,7 @@ void main() {
     push.counters.c.shortGroups.z = 1u;
     push.counters.c.mediumGroups.y = push.counters.c.mediumGroups.z = 1u;
     push.counters.c.longGroups.y = push.counters.c.longGroups.z = 1u;
+    push.counters.c.allGroups.z = push.counters.c.runGroups.z = push.counters.c.mergeGroups.z = 1u;
   }
 #endif
   for (uint i = gl_WorkGroupID.x; i < segments; i += groupCount) {

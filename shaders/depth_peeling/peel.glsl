@@ -1,4 +1,3 @@
-#version 460
 // One pass of depth peeling (Everitt 2001; with DUAL from both ends, Bavoil and Myers 2008). A
 // fragment whose key is the one that the pass before found for its pixel is blended; among those
 // behind it (between both ends) the foremost (and the hindmost) is found for the next pass. So each
@@ -14,15 +13,13 @@
 #extension GL_EXT_shader_atomic_int64 : require
 #endif
 #include "common/order.glsl"
-#include "common/pixel.glsl"
-#include "common/surface_input.glsl"
 #include "depth_peeling/peel_types.h"
+#include "source/fragment.glsl"
 
 layout(push_constant, scalar) uniform Push { PeelPush push; };
 
-// Without it the depth test would come after the stores below. Helper invocations need no care: their
-// stores and atomics have no effect.
-layout(early_fragment_tests) in;
+// Each pass after the first runs if the one before it has found something.
+bool passRuns() { return push.draws.at[push.asked].instanceCount != 0u; }
 
 #ifdef DUAL
 const uint keysPerPixel = 2u;
@@ -81,13 +78,10 @@ void blendBack(uint pixel, vec4 color) {
   if (push.counters.c.lastBackPass < push.pass) atomicMax(push.counters.c.lastBackPass, push.pass);
 }
 
-void main() {
-  const Surface surface = surfaceInput();  // has derivatives: before the quad's invocations part
-  const GpuMaterial material = push.frame.c.materials.at[inMaterial];
-  const uint pixel = pixelIndex(push.frame.c.size);
+void fragment(Fragment f) {
+  const uint pixel = f.index;
   const uint slot = pixel * keysPerPixel;
-  const uint id = push.frame.c.transparentIds.at[gl_PrimitiveID];
-  const uint64_t key = wide(Key(~id, floatBitsToUint(gl_FragCoord.z)));
+  const uint64_t key = wide(Key(~f.id, floatBitsToUint(f.depth)));
   const uint64_t front = wide(push.peeled.at[slot]);
   bool isFront = key == front, isBack = false;
   if (key > front) return;  // peeled before, or the pixel is done
@@ -106,7 +100,7 @@ void main() {
 #endif
   // Only a cutoff takes fragments away: those that are not blended now need no shade without one.
   const bool blends = isFront || isBack;
-  if ((blends || material.alphaCutoff > 0.0) && !shade(material, surface, color)) return;
+  if ((blends || hasCutoff(f)) && !shadeFragment(f, color)) return;
   if (counts) {
     if ((push.does & PASS_COUNTS_ALL) != 0u) atomicAdd(push.counters.c.fragments, 1u);
     if (blends) atomicAdd(push.counters.c.blended, 1u);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "method/method.h"
+#include "source/fragment_source.h"
+
+namespace oitlab {
+
+/// The parameters that every method has that takes fragments from a source: source, deliver, seed.
+std::vector<Parameter> sourceParameters();
+
+/// The source that the parameters choose. `dependsOnOrder`: the method's image depends on the order
+/// of a pixel's fragments, so that deliver=auto means submission. Throws InputError where
+/// parameters contradict each other, DeviceError when the device lacks what the source needs.
+std::unique_ptr<FragmentSource> makeSource(const MethodContext& context,
+                                           bool dependsOnOrder = false);
+
+/// Whether the parameters choose the hardware source.
+bool isHardware(const Parameters& parameters);
+
+}  // namespace oitlab

@@ -1,0 +1,27 @@
+#version 460
+// The end of ACCESS_BLENDED on hardware: the sums of a pixel, which were blended into images, over what is opaque.
+#include "common/bindings.glsl"
+
+struct SourceFragment {
+  uint none;
+};
+#include "source/fragment.glsl"
+
+#include "FRAGMENT_PROGRAM"
+
+// Not called here; the program's contribute() names them.
+bool shadeFragment(Fragment f, out vec4 color) {
+  color = vec4(0.0);
+  return false;
+}
+float viewDistance(Fragment f) { return 0.0; }
+bool hasCutoff(Fragment f) { return false; }
+
+layout(location = 0) out vec4 outColor;  // premultiplied
+
+void main() {
+  vec4 sums[CONTRIBUTIONS];
+  [[unroll]] for (int i = 0; i < CONTRIBUTIONS; ++i)
+    sums[i] = texelFetch(methodImages[i], ivec2(gl_FragCoord.xy), 0);
+  if (!composite(sums, outColor)) discard;
+}
