@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include "quality/compare.h"
 #include "source/compute_types.h"
+#include "support/environment.h"
 #include "util/error.h"
 
 namespace oitlab::testing {
