@@ -126,10 +126,11 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
           const vec2 hitPixel = vec2(pixelOf(hit.y));
           const Prepared t = prepare(push.mesh, push.frame, hit.x, corner);
           Sample f;
-          f.invW = invWOf(t, hitPixel);
+          const float invW = invWOf(t, hitPixel);
+          f.depth = depthOf(push.frame, invW);
           f.id = idOf(t);
           const bool known = (full & (1u << hit.y)) != 0u;
-          if (known || shadePrepared(push.frame, t, hitPixel, f.invW, f.color)) {
+          if (known || shadePrepared(push.frame, t, hitPixel, invW, f.color)) {
             storeSample(lane, f);
             atomicOr(samplesOf[32u * team + hit.y], 1u << lane);
           }

@@ -22,15 +22,15 @@ void capture(uint number) {
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
     const Prepared t = prepare(push.mesh, push.frame, item.triangle, corner);
-    const float invW = invWOf(t, pixel);
-    if (isHidden(push.frame, invW, opaque)) continue;
+    const float invW = invWOf(t, pixel), depth = depthOf(push.frame, invW);
+    if (isHidden(depth, opaque)) continue;
     const uint index = atomicAdd(push.counters.c.deepCaptured, 1u);
     if (index >= push.nodeCapacity) continue;
     vec4 color;
     const bool kept = shadePrepared(push.frame, t, pixel, invW, color);
     Node node;
     node.color = kept ? color : vec4(-1.0);  // cut out: counted, not blended
-    node.depth = invW;
+    node.depth = depth;
     node.id = idOfTriangle(push.mesh, item.triangle);
     node.next = atomicExchange(push.deepPixels.at[number].head, index);
     push.nodes.at[index] = node;

@@ -9,7 +9,7 @@
 
 struct Pixel {
   vec4 accumulated;  // premultiplied
-  float lastInvW;    // of the fragment blended last
+  float lastDepth;   // of the fragment blended last
   uint lastId;
   bool invalid;      // a fragment came after one that it is in front of
   uint samples;      // blended
@@ -18,12 +18,12 @@ struct Pixel {
 
 #define NEAREST uintBitsToFloat(0x7f800000u)  // infinity
 
-bool isInFront(Sample a, Sample b) { return isInFront(a.invW, a.id, b.invW, b.id); }
+bool isInFront(Sample a, Sample b) { return isInFront(a.depth, a.id, b.depth, b.id); }
 
 // An empty place holds a transparent fragment in front of all others. It leaves first and changes nothing.
 void clearPixel(out Pixel p) {
   p.accumulated = vec4(0.0);
-  p.lastInvW = NEAREST;
+  p.lastDepth = NEAREST;
   p.lastId = 0u;
   p.invalid = false;
   p.samples = 0u;
@@ -35,9 +35,9 @@ bool isFull(Pixel p) { return HAS_THRESHOLD == 1 && p.accumulated.a >= push.alph
 // The order is right if and only if no fragment is in front of the one before it, so every wrong pixel is found.
 // Fragments behind the alpha threshold are not blended, but their order is still checked.
 void blendFragment(inout Pixel p, Sample f) {
-  p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
+  p.invalid = p.invalid || isInFront(f.depth, f.id, p.lastDepth, p.lastId);
   if (!isFull(p)) {
-    p.lastInvW = f.invW;
+    p.lastDepth = f.depth;
     p.lastId = f.id;
     p.accumulated = blendUnder(p.accumulated, f.color);
   }
@@ -47,7 +47,7 @@ void blendFragment(inout Pixel p, Sample f) {
 // nothing more, so that its fragments need no color.
 void pushFragment(inout Pixel p, Sample f) {
   if (isFull(p)) {
-    p.invalid = p.invalid || isInFront(f.invW, f.id, p.lastInvW, p.lastId);
+    p.invalid = p.invalid || isInFront(f.depth, f.id, p.lastDepth, p.lastId);
   } else {
     Sample leaving = p.queue[0], carried = f;
     if (isInFront(f, leaving)) {

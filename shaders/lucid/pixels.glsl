@@ -34,16 +34,17 @@ struct Taken {
 Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   const Prepared t = loadPrepared(at);
   Taken taken;
-  taken.f.invW = invWOf(t, pixel);
+  const float invW = invWOf(t, pixel);
+  taken.f.depth = depthOf(push.frame, invW);
   taken.f.id = idOf(t);
   taken.f.color = vec4(0.0);
-  taken.kept = covered && !isHidden(push.frame, taken.f.invW, opaque);
+  taken.kept = covered && !isHidden(taken.f.depth, opaque);
   taken.blends = taken.kept && !full;
 #if HAS_TEXTURES  // a branch is cheaper than texture reads whose result is not used
   if (taken.blends)
 #endif
   {
-    const bool there = shadePrepared(push.frame, t, pixel, taken.f.invW, taken.f.color);
+    const bool there = shadePrepared(push.frame, t, pixel, invW, taken.f.color);
     taken.kept = taken.kept && (full || there);
     taken.blends = taken.blends && there;
   }
@@ -87,7 +88,7 @@ void blendSamples(inout Pixel p, uint own, uint bit, float opaque) {
   if (arrived != 0u) samplesOf[32u * gl_SubgroupID + bit] = 0u;
   for (; arrived != 0u; arrived &= arrived - 1u) {
     const Sample f = loadSample(findLSB(arrived));
-    if (!isHidden(push.frame, f.invW, opaque)) {
+    if (!isHidden(f.depth, opaque)) {
       p.samples += uint(!isFull(p));
       pushFragment(p, f);
     }

@@ -21,10 +21,10 @@ shared vec4 colors[SUBGROUP_SIZE];  // alpha negative: the material cuts the fra
 HalfBlock block;
 uint idOfKey(uvec2 key) { return idOfTriangle(push.mesh, push.list.at[block.first + key.y].x); }
 
-// 1 / w at a pixel, the same bits as in blend.comp.
-float invWAt(uint triangle, ivec2 corner, vec2 pixel) {
+// The depth at a pixel, the same bits as in blend.comp.
+float depthAt(uint triangle, ivec2 corner, vec2 pixel) {
   const ShadeTriangle s = loadShading(push.mesh, triangle);
-  return boundedInvW(originInvW(s, corner), s, pixel);
+  return depthOf(push.frame, boundedInvW(originInvW(s, corner), s, pixel));
 }
 
 // Passes a pixel with more fragments than can be sorted here on to deep_capture.comp.
@@ -50,10 +50,10 @@ void blendPixel(ivec2 corner, uint bit) {
     ++steps;
     const TriHalfBlock item = itemAt(push.list, block.first + i);
     if ((item.mask & (1u << bit)) == 0u) continue;
-    const float invW = invWAt(item.triangle, corner, vec2(pixel));
-    if (isHidden(push.frame, invW, opaque)) continue;
+    const float depth = depthAt(item.triangle, corner, vec2(pixel));
+    if (isHidden(depth, opaque)) continue;
     const uint place = atomicAdd(found, 1u);
-    if (place < LIST) keys[place] = uvec2(floatBitsToUint(invW), i);
+    if (place < LIST) keys[place] = uvec2(floatBitsToUint(depth), i);
   }
   atomicAdd(walked, steps);
   teamBarrier();

@@ -31,19 +31,18 @@ bool shadeFragment(Fragment f, out vec4 color) {
   return shadePrepared(push.frame, f.source.triangle, f.source.place, f.source.invW, color);
 }
 
-float viewDistance(Fragment f) { return 1.0 / f.source.invW; }
+float viewDistance(Fragment f) { return push.frame.c.viewProjection[3][2] / f.depth; }
 
 bool hasCutoff(Fragment f) { return !f.source.isShaded && f.source.triangle.n0.w > 0.0; }
 
-Fragment fragmentAt(ivec2 corner, uint bit, float invW, uint id) {
+Fragment fragmentAt(ivec2 corner, uint bit, float depth, uint id) {
   Fragment f;
   f.pixel = uvec2(corner) + pixelOf(bit);
   f.index = f.pixel.y * push.frame.c.size.x + f.pixel.x;
-  f.depth = depthOf(push.frame, invW);
+  f.depth = depth;
   f.id = id;
   f.samples = 1u;
   f.source.place = vec2(pixelOf(bit));
-  f.source.invW = invW;
   f.source.isShaded = false;
   f.source.color = vec4(0.0);
   return f;
@@ -70,10 +69,11 @@ uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g);
 // Hands the fragment of a prepared triangle at the lane's pixel over.
 void deliverPrepared(inout Owner owner, ivec2 corner, uint bit, float opaque, uint at) {
   const Prepared t = loadPrepared(at);
-  const float invW = invWOf(t, vec2(pixelOf(bit)));
-  if (isHidden(push.frame, invW, opaque)) return;
-  Fragment f = fragmentAt(corner, bit, invW, idOf(t));
+  const float invW = invWOf(t, vec2(pixelOf(bit))), depth = depthOf(push.frame, invW);
+  if (isHidden(depth, opaque)) return;
+  Fragment f = fragmentAt(corner, bit, depth, idOf(t));
   f.source.triangle = t;
+  f.source.invW = invW;
   take(owner, f);
 }
 
@@ -103,10 +103,11 @@ void deliverSamples(inout Owner owner, inout Batch b, ivec2 corner, float opaque
 #if ACCESS == ACCESS_NONE
     if (takes) {
       const Prepared t = prepare(source().c.mesh, push.frame, hit.x, corner);
-      const float invW = invWOf(t, vec2(pixelOf(hit.y)));
-      if (!isHidden(push.frame, invW, opaqueDepthAt(push.frame, corner + ivec2(pixelOf(hit.y))))) {
-        Fragment f = fragmentAt(corner, hit.y, invW, idOf(t));
+      const float invW = invWOf(t, vec2(pixelOf(hit.y))), depth = depthOf(push.frame, invW);
+      if (!isHidden(depth, opaqueDepthAt(push.frame, corner + ivec2(pixelOf(hit.y))))) {
+        Fragment f = fragmentAt(corner, hit.y, depth, idOf(t));
         f.source.triangle = t;
+        f.source.invW = invW;
         take(owner, f);
       }
     }
@@ -114,9 +115,10 @@ void deliverSamples(inout Owner owner, inout Batch b, ivec2 corner, float opaque
     if (takes) {
       const Prepared t = prepare(source().c.mesh, push.frame, hit.x, corner);
       Sample s;
-      s.invW = invWOf(t, vec2(pixelOf(hit.y)));
+      const float invW = invWOf(t, vec2(pixelOf(hit.y)));
+      s.depth = depthOf(push.frame, invW);
       s.id = idOf(t);
-      if (shadePrepared(push.frame, t, vec2(pixelOf(hit.y)), s.invW, s.color)) {
+      if (shadePrepared(push.frame, t, vec2(pixelOf(hit.y)), invW, s.color)) {
         storeSample(lane, s);
         atomicOr(samplesOf[32u * gl_SubgroupID + hit.y], 1u << lane);
       }
@@ -127,8 +129,8 @@ void deliverSamples(inout Owner owner, inout Batch b, ivec2 corner, float opaque
     if (arrived != 0u) samplesOf[32u * gl_SubgroupID + bit] = 0u;
     for (; arrived != 0u; arrived &= arrived - 1u) {
       const Sample s = loadSample(findLSB(arrived));
-      if (isHidden(push.frame, s.invW, opaque)) continue;
-      Fragment f = fragmentAt(corner, bit, s.invW, s.id);
+      if (isHidden(s.depth, opaque)) continue;
+      Fragment f = fragmentAt(corner, bit, s.depth, s.id);
       f.source.isShaded = true;
       f.source.color = s.color;
       take(owner, f);

@@ -30,7 +30,7 @@ struct Prepared {
 };
 
 struct Sample {
-  float invW;  // 1 / distance: what depth is near times. Larger is nearer
+  float depth;  // reversed: larger is nearer
   uint id;
   vec4 color;  // straight, linear
 };
@@ -57,16 +57,17 @@ float boundedInvW(float origin, ShadeTriangle s, vec2 pixel) {
   return planeInvW(origin, s.invWSlope, bounds.x, bounds.y, pixel);
 }
 
-// Reversed depth, as the opaque pass has it: near / distance.
+// Reversed depth: near / distance. It is what fragments are ordered by and what the opaque depth is compared with, for
+// every user of prepared triangles.
 float depthOf(FrameBuffer frame, float invW) {
   precise const float depth = frame.c.viewProjection[3][2] * invW;
   return depth;
 }
 
 // Whether a fragment is behind the opaque depth of its pixel.
-bool isHidden(FrameBuffer frame, float invW, float opaqueDepthThere) {
+bool isHidden(float depth, float opaqueDepthThere) {
 #if HAS_OPAQUE
-  return depthOf(frame, invW) < opaqueDepthThere;
+  return depth < opaqueDepthThere;
 #else
   return false;
 #endif

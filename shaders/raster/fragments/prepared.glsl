@@ -59,7 +59,7 @@ uint sampleWord(uint lane) { return gl_SubgroupID * PREPARED_COUNT * PREPARED_WO
 
 void storeSample(uint lane, Sample f) {
   preparedWords[sampleWord(lane)] = f.color;
-  preparedWords[sampleWord(lane) + 1u].xy = vec2(f.invW, uintBitsToFloat(f.id));
+  preparedWords[sampleWord(lane) + 1u].xy = vec2(f.depth, uintBitsToFloat(f.id));
 }
 
 Sample loadSample(uint lane) {
