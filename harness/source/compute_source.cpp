@@ -100,6 +100,11 @@ Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
                            program.file + " with source=compute");
 }
 
+void ComputeSource::makeAllPrograms() {
+  for (const LazyPipeline* program : {&orderShort_, &orderMedium_, &orderLong_, &merge_})
+    if (isOrdered()) **program;
+}
+
 FragmentPass ComputeSource::make(const FragmentProgram& program) {
   passes_.push_back({program, makePipeline(program)});
   return {passes_.size() - 1};

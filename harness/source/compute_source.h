@@ -33,6 +33,9 @@ class ComputeSource : public FragmentSource {
   }
   bool finishesTarget() const override { return true; }
 
+  /// For tests: makes the programs that frames would only make when they need them.
+  void makeAllPrograms();
+
  private:
   struct Pass {
     FragmentProgram program;

@@ -33,7 +33,7 @@ bool shadeFragment(Fragment f, out vec4 color) {
 
 float viewDistance(Fragment f) { return push.frame.c.viewProjection[3][2] / f.depth; }
 
-bool hasCutoff(Fragment f) { return !f.source.isShaded && f.source.triangle.n0.w > 0.0; }
+bool hasCutoff(Fragment f) { return !f.source.isShaded && hasCutoff(f.source.triangle); }
 
 Fragment fragmentAt(ivec2 corner, uint bit, float depth, uint id) {
   Fragment f;
@@ -66,6 +66,22 @@ uint bitOf(uint g) { return min(gl_SubgroupInvocationID + OWNERS * g, 31u); }
 // The bits of group g in the coverage masks.
 uint groupMask(uint g) { return (0xffffffffu >> (32u - OWNERS)) << (OWNERS * g); }
 
+#if ACCESS == ACCESS_BLENDED && HAS_TEXTURES == 0
+// Without branches, so that the latency of one fragment hides behind the work of another.
+#define IN_PAIRS 1
+
+Contributed contributionAt(ivec2 corner, uint bit, float opaque, uint at, bool covered) {
+  const Prepared t = loadPrepared(at);
+  const float invW = invWOf(t, vec2(pixelOf(bit))), depth = depthOf(push.frame, invW);
+  Fragment f = fragmentAt(corner, bit, depth, idOf(t));
+  f.source.triangle = t;
+  f.source.invW = invW;
+  return contributed(f, covered && !isHidden(depth, opaque));
+}
+#else
+#define IN_PAIRS 0
+#endif
+
 // Hands the fragment of a prepared triangle at the lane's pixel over.
 void deliverPrepared(inout Owner owner, ivec2 corner, uint bit, float opaque, uint at) {
   const Prepared t = loadPrepared(at);
@@ -82,6 +98,17 @@ void deliverBatch(inout Owner owner, ivec2 corner, uint bit, float opaque, uint 
   const uint lane = gl_SubgroupInvocationID, first = gl_SubgroupID * PREPARED_COUNT;
   const uint pixelBit = lane < OWNERS ? 1u << bit : 0u;
   if (SMALL_SUBGROUP == 0) {
+#if IN_PAIRS
+    for (uint k = 0u; k < count; k += 2u) {
+      const uint next = min(k + 1u, count - 1u);
+      const bool second = (batch[at + next].y & pixelBit) != 0u && next > k;
+      const Contributed c0 = contributionAt(corner, bit, opaque, first + k, (batch[at + k].y & pixelBit) != 0u);
+      const Contributed c1 = contributionAt(corner, bit, opaque, first + next, second);
+      combine(owner, c0);
+      combine(owner, c1);
+    }
+    return;
+#endif
     for (uint k = 0u; k < count; ++k)
       if ((batch[at + k].y & pixelBit) != 0u) deliverPrepared(owner, corner, bit, opaque, first + k);
   } else {

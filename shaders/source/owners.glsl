@@ -73,15 +73,30 @@ void open(out Owner owner, ivec2 place) {
 #endif
 }
 
-void take(inout Owner owner, Fragment f) {
+struct Contributed {
   vec4 c[CONTRIBUTIONS];
-  if (!contribute(f, c)) return;
+  bool counts;
+};
+
+// `exists`: the fragment covers the pixel and is not hidden. contribute() is called in any case.
+Contributed contributed(Fragment f, bool exists) {
+  Contributed result;
+  const bool there = contribute(f, result.c);
+  result.counts = exists && there;
+  return result;
+}
+
+void combine(inout Owner owner, Contributed with) {
+  if (!with.counts) return;
   ++owner.taken;
-  [[unroll]] for (int i = 0; i < CONTRIBUTIONS; ++i) owner.sums[i] = combined(operations[i], owner.sums[i], c[i]);
+  [[unroll]] for (int i = 0; i < CONTRIBUTIONS; ++i)
+    owner.sums[i] = combined(operations[i], owner.sums[i], with.c[i]);
 #if ON_TARGET
   owner.sums[0] = rounded(owner.sums[0]);
 #endif
 }
+
+void take(inout Owner owner, Fragment f) { combine(owner, contributed(f, true)); }
 
 void close(Owner owner, ivec2 place) {
 #if ON_TARGET

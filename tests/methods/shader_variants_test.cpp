@@ -4,6 +4,7 @@
 
 #include "lucid/programs.h"
 #include "raster/block_lists.h"
+#include "source/compute_source.h"
 #include "measure/clock_probe.h"
 #include "render/depth_complexity.h"
 #include "support/gpu.h"
@@ -42,6 +43,8 @@ std::vector<Given> variantsOf(const MethodInfo& method) {
           for (const std::string& other : valuesOf(parameters[b]))
             variants.push_back({{parameters[a].name, value}, {parameters[b].name, other}});
     }
+  for (Given& given : variants)  // most orders of delivery are for one source only
+    if (given.contains("deliver")) given.emplace("source", "compute");
   return variants;
 }
 
@@ -99,6 +102,10 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
   raster::BlockLists lists(device, fixtures.front()->renderer().scene(),
                            fixtures.front()->target(), memory, {});
   for (const bool hasUnsnapped : {false, true}) lists.makeAllPrograms(hasUnsnapped);
+  for (int deliver = DELIVER_ANY; deliver <= DELIVER_SHUFFLED; ++deliver)
+    ComputeSource(device, fixtures.front()->renderer().scene(), fixtures.front()->target(), memory,
+                  {.deliver = deliver})
+        .makeAllPrograms();
   ClockProbe probe(device, 1, 1);
   fixtures.back()->render("blend");
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());

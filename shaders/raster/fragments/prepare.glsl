@@ -18,7 +18,8 @@
 struct Prepared {
   vec4 w;      // 1 / w: at the origin, per pixel right, per pixel down; PREPARED_* bits
   vec4 n0;     // normal of the corner that weighs 1 - b1 - b2; alpha cutoff
-  vec4 color;  // of the material, times the vertex color if all corners have the same
+  vec4 color;  // of the material, times the vertex color if all corners have the same. If nothing is interpolated: shaded;
+               // alpha is negative if the material cuts the triangle out
   vec4 range;  // smallest and largest 1 / w; primitive id
   // Where the scene interpolates:
   vec4 b1, b2;   // the weights over w: at the origin, per pixel right, per pixel down
@@ -124,6 +125,18 @@ Prepared prepare(Mesh mesh, FrameBuffer frame, ShadeTriangle s, ivec2 corner) {
     }
   }
 #endif
+#if INTERPOLATES == 0
+  // All fragments of the triangle have one color.
+  GpuMaterial flat_ = material;
+  flat_.baseColor = p.color;
+  flat_.atlas = 0u;
+  flat_.ignoreVertexAlpha = 1u;
+  Surface surface;
+  surface.normal = n0;
+  surface.color = vec4(1.0);  // contained in `baseColor`
+  vec4 color;
+  p.color = shade(flat_, surface, color) ? color : vec4(-1.0);
+#endif
   p.w = vec4(originInvW(s, corner), s.invWSlope, uintBitsToFloat(bits));
   p.n0 = vec4(n0, material.alphaCutoff);
   p.range = vec4(bounds, uintBitsToFloat(s.id), 0.0);
@@ -144,6 +157,10 @@ uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }
 // The color (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block. Returns false if the
 // material cuts it out.
 bool shadePrepared(FrameBuffer frame, Prepared p, vec2 pixel, float invW, out vec4 color) {
+#if INTERPOLATES == 0
+  color = p.color;
+  return color.a >= 0.0;
+#else
   const uint bits = floatBitsToUint(p.w.w);
   GpuMaterial material;
   material.baseColor = p.color;
@@ -151,9 +168,7 @@ bool shadePrepared(FrameBuffer frame, Prepared p, vec2 pixel, float invW, out ve
   material.atlas = HAS_TEXTURES == 1 ? bits & PREPARED_ATLAS : 0u;
   material.ignoreVertexAlpha = 1u;
   Surface s;
-  s.normal = p.n0.xyz;
   s.color = vec4(1.0);  // contained in `baseColor`
-#if INTERPOLATES
   precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
   precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
   precise const float inverse = 1.0 / invW;
@@ -184,8 +199,17 @@ bool shadePrepared(FrameBuffer frame, Prepared p, vec2 pixel, float invW, out ve
     if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
   }
 #endif
-#endif
   return shade(material, s, color);
+#endif
+}
+
+// Whether shadePrepared() can return false.
+bool hasCutoff(Prepared p) {
+#if INTERPOLATES == 0
+  return p.color.a < 0.0;
+#else
+  return p.n0.w > 0.0;
+#endif
 }
 
 #endif

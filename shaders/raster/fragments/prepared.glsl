@@ -4,24 +4,24 @@
 
 #include "raster/fragments/prepare.glsl"
 
-// Number of 16-byte words per triangle. Every scene needs the first four. The number is odd, so that the accesses of
+// Number of 16-byte words per triangle. Every scene needs the first three. The number is odd, so that the accesses of
 // neighboring lanes fall into different banks.
 #define HAS_MORE (HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
-#define PREPARED_WORDS (HAS_MORE ? 9u : INTERPOLATES ? 7u : 5u)
+#define PREPARED_WORDS (HAS_MORE ? 9u : INTERPOLATES ? 7u : 3u)
 
 // Triangles per team: an even number, since they are shaded in pairs, with room for two words for each of 32 lanes
 // (sampleWord). The number is small because shared memory limits how many subgroups run at the same time: an NVIDIA
 // H200 gives it 48 KB per multiprocessor (docs/performance.md).
-#define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 14u)
+#define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 22u)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
 void storePrepared(uint at, Prepared p) {
   const uint place = at * PREPARED_WORDS;
   preparedWords[place + 0u] = p.w;
-  preparedWords[place + 1u] = p.n0;
-  preparedWords[place + 2u] = p.color;
-  preparedWords[place + 3u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
+  preparedWords[place + 1u] = p.color;
+  preparedWords[place + 2u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
 #if INTERPOLATES
+  preparedWords[place + 3u] = p.n0;
   preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
   preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
   preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
@@ -36,10 +36,10 @@ Prepared loadPrepared(uint at) {
   const uint place = at * PREPARED_WORDS;
   Prepared p;
   p.w = preparedWords[place + 0u];
-  p.n0 = preparedWords[place + 1u];
-  p.color = preparedWords[place + 2u];
-  p.range = preparedWords[place + 3u];
+  p.color = preparedWords[place + 1u];
+  p.range = preparedWords[place + 2u];
 #if INTERPOLATES
+  p.n0 = preparedWords[place + 3u];
   p.b1 = preparedWords[place + 4u];
   p.b2 = preparedWords[place + 5u];
   const vec4 last = preparedWords[place + 6u];

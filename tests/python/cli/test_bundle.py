@@ -69,7 +69,7 @@ stage_frames = 3
     assert listed.returncode == 0 and "boxes" in listed.stdout
 
     # Its own shaders are what it reads.
-    shader = bundle / "shaders" / "blend" / "blend.frag"
+    shader = bundle / "shaders" / "blend" / "blend.glsl"
     text = shader.read_text()
     shader.write_text(text + "\nbroken")
     try:

@@ -138,10 +138,10 @@ def test_an_edited_shader_makes_its_groups_old(oitlab, toml, results, tmp_path):
     run = ("run", toml, "--results", results, "--size", "32x18")
     assert measured(oitlab(*run, env=env)) == (3, 0)
     assert measured(oitlab(*run, env=env)) == (0, 3)
-    unused = root / "shaders" / "wboit" / "composite.frag"
+    unused = root / "shaders" / "wboit" / "wboit.glsl"
     unused.write_text(unused.read_text() + "\n// edited\n")
     assert measured(oitlab(*run, env=env)) == (0, 3)
-    edited = root / "shaders" / "blend" / "blend.frag"
+    edited = root / "shaders" / "blend" / "blend.glsl"
     edited.write_text(edited.read_text() + "\n// edited\n")
     done = oitlab(*run, env=env)
-    assert measured(done) == (3, 0) and "shader blend/blend.frag has changed" in done.stderr
+    assert measured(done) == (3, 0) and "shader source/hardware.frag" in done.stderr and "blend/blend.glsl" in done.stderr

@@ -51,7 +51,7 @@ def test_list_scenes(oitlab):
 def test_render_json(render_json):
     result = render_json("--scene", "boxes", "--method", "reference")
     assert result["size"] == [96, 54] and result["method"] == "reference"
-    assert result["parameters"] == {"initial_depth": 4.0}
+    assert result["parameters"] == {"initial_depth": 4.0, "source": "hardware", "deliver": "auto", "deliver_seed": 0}
     assert result["device"]["name"]
     assert result["gpu_ms"]["frame"] > 0
     assert {"opaque", "clear", "capture", "resolve"} == result["gpu_ms"]["stages"].keys()
