@@ -17,6 +17,7 @@ struct DepthOptions {
   std::string scene;
   std::string size = "1280x720";
   std::string view = "default";
+  std::string source = "hardware";
   std::optional<float> opacity;
   float detail = 1.0f;
   bool allowOutside = false;
@@ -88,7 +89,7 @@ int depth(const DepthOptions& options) {
   const Target target(device, size->first, size->second, TargetFormat::rgba16f);
   const GpuScene gpuScene(device, scene);
   Renderer renderer(device, gpuScene, target);
-  const DepthComplexity counted = countFragments(renderer, camera);
+  const DepthComplexity counted = countFragments(renderer, camera, options.source == "hardware");
 
   nlohmann::json result = describeDepth(counted);
   result["device"] = describeDevice(device.info());
@@ -140,6 +141,9 @@ void addDepth(CLI::App& program, Action& action) {
   verb->add_option("--opacity", options->opacity, "Give every material this opacity, in (0, 1]");
   verb->add_option("--detail", options->detail,
                    "Generated scenes: share of the triangles, in (0, 1]")
+      ->capture_default_str();
+  verb->add_option("--source", options->source, "Where fragments come from: hardware or compute")
+      ->check(CLI::IsMember({"hardware", "compute"}))
       ->capture_default_str();
   verb->add_option("--out", options->out,
                    "Heat map: a picture with a legend (.png) or the counts (.exr)")

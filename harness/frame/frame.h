@@ -25,7 +25,7 @@ struct Frame {
   vk::DescriptorSet bindings;  ///< set 0 of every pipeline
   std::uint64_t constants;     ///< address of `values`
   const FrameConstants& values;
-  bool instrumented;           ///< stages are timed, and counters may cost time
+  bool instrumented;  ///< stages are timed, and counters may cost time
   FrameTimer& timer;
   std::function<void(std::uint32_t part)> fillTarget = {};  ///< see finishTarget()
 

@@ -77,8 +77,8 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
     commands_.reset();
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     Frame frame{
-        device_,      commands_, scene_, target_, camera, bindings_.set(), constants_.address(),
-        constants,    instrumented, timer_};
+        device_,   commands_,    scene_, target_, camera, bindings_.set(), constants_.address(),
+        constants, instrumented, timer_};
     timer_.begin(commands_, instrumented);
     frame.stage("opaque", [&] {
       // lavapipe (Mesa 22.3) crashes when a clear, a dispatch and a render pass follow each other.

@@ -3,10 +3,10 @@
 #include <set>
 
 #include "lucid/programs.h"
-#include "raster/block_lists.h"
-#include "source/compute_source.h"
 #include "measure/clock_probe.h"
+#include "raster/block_lists.h"
 #include "render/depth_complexity.h"
+#include "source/compute_source.h"
 #include "support/gpu.h"
 #include "util/error.h"
 #include "util/paths.h"
@@ -51,8 +51,8 @@ std::vector<Given> variantsOf(const MethodInfo& method) {
 /// Programs of lucid that a frame would only make when it needs them.
 void makeAll(const lucid::Programs& programs) {
   for (const auto* program :
-       {&programs.ordered, &programs.sortLow, &programs.sortHigh, &programs.lowRaster, &programs.highRaster,
-        &programs.repair, &programs.deepCapture, &programs.deepResolve})
+       {&programs.ordered, &programs.sortLow, &programs.sortHigh, &programs.lowRaster,
+        &programs.highRaster, &programs.repair, &programs.deepCapture, &programs.deepResolve})
     **program;
 }
 
@@ -99,8 +99,8 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
     }
   }
   MemoryLedger memory;
-  raster::BlockLists lists(device, fixtures.front()->renderer().scene(),
-                           fixtures.front()->target(), memory, {});
+  raster::BlockLists lists(device, fixtures.front()->renderer().scene(), fixtures.front()->target(),
+                           memory, {});
   for (const bool hasUnsnapped : {false, true}) lists.makeAllPrograms(hasUnsnapped);
   for (int deliver = DELIVER_ANY; deliver <= DELIVER_SHUFFLED; ++deliver)
     ComputeSource(device, fixtures.front()->renderer().scene(), fixtures.front()->target(), memory,
