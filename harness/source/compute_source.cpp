@@ -1,6 +1,7 @@
 #include "source/compute_source.h"
 
 #include "raster/raster_defines.h"
+#include "source/program_contract.h"
 #include "source/program_defines.h"
 #include "util/error.h"
 
@@ -96,8 +97,10 @@ Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
                                    {"TEAMS", text(teamsOf(device_))},
                                    {"SAMPLE_COST", "4u"},
                                    {"VERIFY_LOOPS", raster::verifiesLoops(device_) ? "1" : "0"}});
-  return Pipeline::compute(device_, "source/compute.comp", defines, {}, device_.info().subgroupSize,
-                           program.file + " with source=compute");
+  return makeProgram(program, [&] {
+    return Pipeline::compute(device_, "source/compute.comp", defines, {},
+                             device_.info().subgroupSize, program.file + " with source=compute");
+  });
 }
 
 void ComputeSource::makeAllPrograms() {

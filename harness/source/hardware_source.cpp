@@ -1,5 +1,6 @@
 #include "source/hardware_source.h"
 
+#include "source/program_contract.h"
 #include "source/program_defines.h"
 #include "util/check.h"
 #include "util/error.h"
@@ -62,15 +63,17 @@ FragmentPass HardwareSource::make(const FragmentProgram& program) {
   }
   if (description.blends.size() > 1)
     checkFeature("independentBlend", "to combine several sums in different ways");
-  pass.fragments = Pipeline::graphics(device_, description);
+  pass.fragments = makeProgram(program, [&] { return Pipeline::graphics(device_, description); });
   if (!pass.sums.empty())
-    pass.composite = Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
-                                                  .fragmentShader = "source/composite.frag",
-                                                  .defines = programDefines(program),
-                                                  .colorFormats = {vulkanFormat(target_.format())},
-                                                  .depthFormat = Target::depthFormat,
-                                                  .depthTest = false,
-                                                  .blends = {premultipliedOver()}});
+    pass.composite = makeProgram(program, [&] {
+      return Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
+                                          .fragmentShader = "source/composite.frag",
+                                          .defines = programDefines(program),
+                                          .colorFormats = {vulkanFormat(target_.format())},
+                                          .depthFormat = Target::depthFormat,
+                                          .depthTest = false,
+                                          .blends = {premultipliedOver()}});
+    });
   passes_.push_back(std::move(pass));
   Pass& made = passes_.back();
   if (!made.sums.empty()) {

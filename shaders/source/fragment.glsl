@@ -17,6 +17,7 @@
 #ifndef OITLAB_SOURCE_FRAGMENT_GLSL
 #define OITLAB_SOURCE_FRAGMENT_GLSL
 
+#include "common/frame_types.h"
 #include "source/access.h"
 
 // A transparent fragment that is not behind the opaque depth of its pixel.

@@ -1,6 +1,5 @@
 // The smallest possible method, as methods/README.md describes it. A test adds it to the program.
-#include "frame/sample_counter.h"
-#include "method/method.h"
+#include "method/make_source.h"
 #include "sum_of_layers/sum_types.h"
 
 namespace oitlab::sum_of_layers {
@@ -9,31 +8,31 @@ class SumOfLayers : public Method {
  public:
   explicit SumOfLayers(const MethodContext& context)
       : strength_(float(context.parameters.real("strength"))),
-        pipeline_(Pipeline::graphics(context.device,
-                                     {.fragmentShader = "sum_of_layers/sum.frag",
-                                      .colorFormats = {vulkanFormat(context.target.format())},
-                                      .depthFormat = Target::depthFormat,
-                                      .blends = {additive()}})),
-        samples_(context.device) {}
+        source_(makeSource(context)),
+        pass_(source_->make(
+            {.file = "sum_of_layers/sum.glsl",
+             .access = Access::blended,
+             .sums = {{vk::Format::eR32G32B32A32Sfloat, glm::vec4(0), COMBINE_ADD, "light"}},
+             .needsId = false})) {}
+
+  bool finishesTarget() const override { return source_->finishesTarget(); }
 
   void record(const Frame& frame) override {
-    samples_.reset(frame);
-    frame.stage("sum", [&] {
-      frame.renderOnTarget([&] {
-        samples_.count(frame, [&] {
-          frame.bind(pipeline_, SumPush{frame.constants, strength_});
-          frame.drawTransparent();
-        });
-      });
-    });
+    source_->run(frame, "sum", pass_, SumPush{source_->begin(frame), strength_});
+    source_->end(frame);
   }
 
-  Status status() override { return {.counters = samples_.counters()}; }
+  Status status() override {
+    if (source_->grow()) return {.recordAgain = true};
+    Status status;
+    source_->addCounters(status.counters);
+    return status;
+  }
 
  private:
   float strength_;
-  Pipeline pipeline_;
-  SampleCounter samples_;
+  std::unique_ptr<FragmentSource> source_;
+  FragmentPass pass_;
 };
 
 const RegisterMethod registered({
@@ -42,6 +41,7 @@ const RegisterMethod registered({
     .source = "methods/README.md",
     .exact = false,
     .parameters = {real("strength", 1.0, 0.0, 4.0, "factor of each layer")},
+    .takesFragments = true,
     .make = makeMethod<SumOfLayers>,
 });
 
