@@ -5,12 +5,13 @@
 """
 
 import argparse
+import itertools
 
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.patches import FancyBboxPatch  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib.patches import FancyBboxPatch
 
 GREY, BLUE, ORANGE, GREEN = "#f2f2f2", "#dbe9f6", "#fde5cf", "#dff0d8"
 COLUMNS = {"hardware": 1.6, "compute": 6.4}
@@ -29,7 +30,7 @@ def arrow(axes, start, end):
 
 
 def chain(axes, x, color, steps):
-    for (y, text), (below, _) in zip(steps, steps[1:]):
+    for (y, text), (below, _) in itertools.pairwise(steps):
         box(axes, x, y, text, color)
         arrow(axes, (x, y - 0.37), (x, below + 0.37))
     box(axes, x, steps[-1][0], steps[-1][1], color)
@@ -56,8 +57,7 @@ def main():
         arrow(axes, (x, 2.53), (middle + (x - middle) * 0.45, 2.22))
         axes.text(x - WIDTH / 2 if x < middle else x + WIDTH / 2, 5.42, f"source={name}",
                   ha="left" if x < middle else "right", fontsize=9, fontweight="bold")
-    box(axes, middle, 1.85, "the method's fragment program\nFragment: pixel, depth, id, shadeFragment()", GREEN, width=5,
-        height=0.7)
+    box(axes, middle, 1.85, "the method's fragment program\nFragment: pixel, depth, id, shadeFragment()", GREEN, 5, 0.7)
     box(axes, middle, 0.85, "own buffers and atomics  |  sums  |  a state of the pixel", GREY, width=5)
     arrow(axes, (middle, 1.45), (middle, 1.22))
     box(axes, COLUMNS["hardware"], -0.2, "sums: images, blending units", BLUE)

@@ -144,4 +144,5 @@ def test_an_edited_shader_makes_its_groups_old(oitlab, toml, results, tmp_path):
     edited = root / "shaders" / "blend" / "blend.glsl"
     edited.write_text(edited.read_text() + "\n// edited\n")
     done = oitlab(*run, env=env)
-    assert measured(done) == (3, 0) and "shader source/hardware.frag" in done.stderr and "blend/blend.glsl" in done.stderr
+    assert measured(done) == (3, 0)
+    assert "shader source/hardware.frag" in done.stderr and "blend/blend.glsl" in done.stderr

@@ -7,8 +7,8 @@ import time
 
 import numpy
 import pytest
-from oitlab_analysis.compare.sections import MOST_SECTIONS
 from oitlab_analysis.compare.diff import diff
+from oitlab_analysis.compare.sections import MOST_SECTIONS
 from oitlab_analysis.compare.statistics import MOST_DRAWN, resampled_medians
 from oitlab_analysis.paper.measured import MOST_CONTEXTS, MOST_DEVICES, gather
 from oitlab_analysis.read import limits
