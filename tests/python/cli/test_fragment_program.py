@@ -71,3 +71,15 @@ def test_a_missing_function_of_a_program_with_its_own_buffers_is_named(render_ed
     assert done.returncode == 2
     assert done.stderr == ("oitlab: shaders/my_none/my_none.glsl: has no void fragment(Fragment f); its access "
                            "needs it, as shaders/source/fragment.glsl says\n")
+
+
+@pytest.mark.parametrize("method, source", [("sum_of_layers", "hardware"), ("sum_of_layers", "compute"),
+                                            ("nearest_layers", "compute")])
+def test_a_program_that_does_not_end_is_named(render_edited, method, source):
+    """The compiler reads on, and finds the error in a file of the source."""
+    done = render_edited(method, source, r"\}\n\Z", "")
+    assert done.returncode == 2
+    first = next(line for line in done.stderr.splitlines() if line.startswith("ERROR: "))
+    assert first.startswith("ERROR: source/")
+    assert done.stderr.startswith(f"oitlab: shaders/{FILES[method]}: the errors are behind its end; a bracket "
+                                  "or a semicolon may be missing there, or a name may be one of the source's. ")
