@@ -47,7 +47,7 @@ class Sweep:
 
     def run(self, *options, **environment):
         # A run takes seconds. With four other processes on a busy machine of two cores, and nothing in the
-        # driver's cache, one took more than five minutes.
+        # driver's cache, one did not end within five minutes.
         return subprocess.run([*self.command, *options], capture_output=True, text=True, timeout=1800,
                               cwd=self.folder, env={**os.environ, **environment})
 
