@@ -3,7 +3,7 @@
 #include "blend/sort_types.h"
 
 #include "gpu/radix_sort.h"
-#include "method/make_source.h"
+#include "method/one_pass_method.h"
 #include "util/rounding.h"
 
 namespace oitlab::blend {
@@ -57,17 +57,14 @@ class CentroidSort {
   Buffer indices_, sequence_;
 };
 
-class Blend : public Method {
+class Blend : public OnePassMethod {
  public:
   explicit Blend(const MethodContext& context)
-      : source_(makeSource(context, true)),
-        pass_(source_->make(
-            {.file = "blend/blend.glsl", .access = Access::blended, .needsId = false})) {
+      : OnePassMethod(context,
+                      {.file = "blend/blend.glsl", .access = Access::blended, .needsId = false}) {
     if (context.parameters.choice("order") == "sorted" && context.scene.transparentCount() > 0)
       sort_.emplace(context.device, context.memory, context.scene, !isHardware(context.parameters));
   }
-
-  bool finishesTarget() const override { return source_->finishesTarget(); }
 
   void record(const Frame& frame) override {
     Submission submission;
@@ -76,21 +73,10 @@ class Blend : public Method {
       frame.stage("sort", [&] { sort_->record(frame); });
       submission = {.indices = &sort_->indices(), .sequence = &sort_->sequence()};
     }
-    const std::uint64_t push = source_->begin(frame, submission);
-    source_->run(frame, "blend", pass_, push);
-    source_->end(frame);
-  }
-
-  Status status() override {
-    if (source_->grow()) return {.recordAgain = true};
-    Status status;
-    source_->addCounters(status.counters);
-    return status;
+    recordPass(frame, "blend", FrameOnly{}, submission);
   }
 
  private:
-  std::unique_ptr<FragmentSource> source_;
-  FragmentPass pass_;
   std::optional<CentroidSort> sort_;
 };
 

@@ -1,33 +1,18 @@
 // Weighted blended OIT (McGuire and Bavoil 2013): one geometry pass and a composite, without
 // sorting and lists. Weights that decrease with depth approximate the order.
-#include "method/make_source.h"
+#include "method/one_pass_method.h"
 #include "wboit/wboit_types.h"
 
 namespace oitlab::wboit {
 
-class Wboit : public Method {
+class Wboit : public OnePassMethod {
  public:
   explicit Wboit(const MethodContext& context)
-      : source_(makeSource(context)),
-        pass_(source_->make(program(context.parameters))),
+      : OnePassMethod(context, program(context.parameters)),
         depthScale_(context.parameters.real("depth_scale")),
         paperRange_(rangeOf(context.parameters.choice("weight"))) {}
 
-  bool finishesTarget() const override { return source_->finishesTarget(); }
-
-  void record(const Frame& frame) override {
-    WboitPush push = pushFor(frame);
-    push.frame = source_->begin(frame);
-    source_->run(frame, "accumulate", pass_, push);
-    source_->end(frame);
-  }
-
-  Status status() override {
-    if (source_->grow()) return {.recordAgain = true};
-    Status status;
-    source_->addCounters(status.counters);
-    return status;
-  }
+  void record(const Frame& frame) override { recordPass(frame, "accumulate", pushFor(frame)); }
 
  private:
   static FragmentProgram program(const Parameters& parameters) {
@@ -66,8 +51,6 @@ class Wboit : public Method {
     return {frame.constants, scale, nearest, farthest};
   }
 
-  std::unique_ptr<FragmentSource> source_;
-  FragmentPass pass_;
   double depthScale_;
   float paperRange_;
 };

@@ -1,35 +1,17 @@
 // A k-buffer, as methods/README.md describes it. A test adds it to the program.
-#include "method/make_source.h"
+#include "method/one_pass_method.h"
 
 namespace oitlab::nearest_layers {
 
-class NearestLayers : public Method {
+class NearestLayers : public OnePassMethod {
  public:
   explicit NearestLayers(const MethodContext& context)
-      : source_(makeSource(context)),
-        pass_(source_->make(
-            {.file = "nearest_layers/nearest.glsl",
-             .access = Access::exclusive,
-             .defines = {{"KEPT", std::to_string(context.parameters.integer("k"))}}})) {}
+      : OnePassMethod(context,
+                      {.file = "nearest_layers/nearest.glsl",
+                       .access = Access::exclusive,
+                       .defines = {{"KEPT", std::to_string(context.parameters.integer("k"))}}}) {}
 
-  bool finishesTarget() const override { return source_->finishesTarget(); }
-
-  void record(const Frame& frame) override {
-    const std::uint64_t push = source_->begin(frame);
-    source_->run(frame, "nearest", pass_, push);
-    source_->end(frame);
-  }
-
-  Status status() override {
-    if (source_->grow()) return {.recordAgain = true};
-    Status status;
-    source_->addCounters(status.counters);
-    return status;
-  }
-
- private:
-  std::unique_ptr<FragmentSource> source_;
-  FragmentPass pass_;
+  void record(const Frame& frame) override { recordPass(frame, "nearest", FrameOnly{}); }
 };
 
 const RegisterMethod registered({

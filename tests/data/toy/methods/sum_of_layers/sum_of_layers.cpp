@@ -1,38 +1,26 @@
 // The smallest possible method, as methods/README.md describes it. A test adds it to the program.
-#include "method/make_source.h"
+#include "method/one_pass_method.h"
 #include "sum_of_layers/sum_types.h"
 
 namespace oitlab::sum_of_layers {
 
-class SumOfLayers : public Method {
+class SumOfLayers : public OnePassMethod {
  public:
   explicit SumOfLayers(const MethodContext& context)
-      : strength_(float(context.parameters.real("strength"))),
-        source_(makeSource(context)),
-        pass_(source_->make(
+      : OnePassMethod(
+            context,
             {.file = "sum_of_layers/sum.glsl",
              .access = Access::blended,
              .sums = {{vk::Format::eR32G32B32A32Sfloat, glm::vec4(0), COMBINE_ADD, "light"}},
-             .needsId = false})) {}
-
-  bool finishesTarget() const override { return source_->finishesTarget(); }
+             .needsId = false}),
+        strength_(float(context.parameters.real("strength"))) {}
 
   void record(const Frame& frame) override {
-    source_->run(frame, "sum", pass_, SumPush{source_->begin(frame), strength_});
-    source_->end(frame);
-  }
-
-  Status status() override {
-    if (source_->grow()) return {.recordAgain = true};
-    Status status;
-    source_->addCounters(status.counters);
-    return status;
+    recordPass(frame, "sum", SumPush{.frame = 0, .strength = strength_});
   }
 
  private:
   float strength_;
-  std::unique_ptr<FragmentSource> source_;
-  FragmentPass pass_;
 };
 
 const RegisterMethod registered({
