@@ -46,10 +46,10 @@ void checkFeatures(const Device& device) {
 ComputeSource::ComputeSource(const Device& device, const GpuScene& scene, const Target& target,
                              MemoryLedger& memory, const Options& options)
     : device_((checkFeatures(device), device)),
-      scene_(scene),
       target_(target),
       memory_(memory),
       options_(options),
+      sceneDefines_(raster::sceneDefines(scene, false)),
       lists_(device, scene, target, memory, listOptions(device, options.deliver)),
       constants_(device, memory, "source constants", sizeof(SourceConstants), BufferKind::upload) {
   const auto& submitted = scene.submission();
@@ -86,7 +86,7 @@ void ComputeSource::makeOrderPrograms() {
 
 Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
   Defines defines = raster::with(programDefines(program), raster::teamDefines(device_));
-  defines = raster::with(defines, raster::sceneDefines(scene_, lists_.frontEnd().hasUnsnapped()));
+  defines = raster::with(defines, sceneDefines_);
   const TargetFormat format = target_.format();
   const char* bits = format == TargetFormat::rgba8     ? "8"
                      : format == TargetFormat::rgba16f ? "16"
@@ -95,7 +95,6 @@ Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
                                    {"TARGET_BITS", bits},
                                    {"DELIVER", std::to_string(options_.deliver)},
                                    {"TEAMS", text(teamsOf(device_))},
-                                   {"SAMPLE_COST", "4u"},
                                    {"VERIFY_LOOPS", raster::verifiesLoops(device_) ? "1" : "0"}});
   return makeProgram(program, [&] {
     return Pipeline::compute(device_, "source/compute.comp", defines, {},
@@ -199,6 +198,7 @@ bool ComputeSource::grow() {
   const bool hadUnsnapped = lists_.frontEnd().hasUnsnapped();
   bool lacked = lists_.grow();
   if (!hadUnsnapped && lists_.frontEnd().hasUnsnapped()) {
+    sceneDefines_ = raster::with(sceneDefines_, {{"HAS_UNSNAPPED", "1"}});
     for (Pass& pass : passes_) pass.pipeline = makePipeline(pass.program);
     if (isOrdered()) makeOrderPrograms();
   }

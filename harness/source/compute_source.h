@@ -52,10 +52,10 @@ class ComputeSource : public FragmentSource {
   bool isOrdered() const { return options_.deliver != DELIVER_ANY; }
 
   const Device& device_;
-  const GpuScene& scene_;
   const Target& target_;
   MemoryLedger& memory_;
   Options options_;
+  Defines sceneDefines_;  // found once: they take a walk over the whole scene
   raster::BlockLists lists_;
   std::vector<Pass> passes_;
   LazyPipeline orderShort_, orderMedium_, orderLong_, merge_;

@@ -107,10 +107,10 @@ void deliverBatch(inout Owner owner, ivec2 corner, uint bit, float opaque, uint 
       combine(owner, c0);
       combine(owner, c1);
     }
-    return;
-#endif
+#else
     for (uint k = 0u; k < count; ++k)
       if ((batch[at + k].y & pixelBit) != 0u) deliverPrepared(owner, corner, bit, opaque, first + k);
+#endif
   } else {
     // There are several groups of pixels: only the triangles that reach this one.
     const bool reaches = lane < count && (batch[at + min(lane, count - 1u)].y & groupMask(bit / OWNERS)) != 0u;
@@ -193,8 +193,9 @@ uint deliverList(HalfBlock block) {
     Batch b = makeBatch(item.triangle, item.mask);
     iterations += min(SUBGROUP_SIZE, block.count - first) - b.size;
     // Where triangles cover many of the pixels, each lane shades its own pixel. Where they are small, lanes take
-    // samples one after the other. In small subgroups the first way is always faster (lucid/blend.comp).
-    if (SMALL_SUBGROUP == 1 || SAMPLE_COST * b.samples >= OWNERS * b.size) {
+    // samples one after the other, which costs four times as much per sample. In small subgroups the first way is
+    // always faster (lucid/blend.comp).
+    if (SMALL_SUBGROUP == 1 || 4u * b.samples >= OWNERS * b.size) {
       for (uint portion = 0u; portion < b.size; portion += PREPARED_COUNT) {
         const uint mine = b.place - b.at - portion;  // wraps around for an earlier portion
         if (item.mask != 0u && mine < PREPARED_COUNT)
@@ -213,6 +214,7 @@ uint deliverList(HalfBlock block) {
       iterations += b.size;
       teamBarrier();
       deliverSamples(owners[0], b, corner, opaque[0]);
+      teamBarrier();  // all lanes have read `batch` before it is written again
     }
   }
   covered = subgroupOr(covered);
