@@ -12,25 +12,16 @@
 // change of layout stays where its barrier is left out. Timestamps stay at their places among the
 // actions; query pools are reset first, and debug labels begin and end. A render pass is one
 // action. Commands that the program does not use are unknown, and end the process.
-#include "reorder.h"
-
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
-#include <map>
-#include <mutex>
 #include <numeric>
-#include <string>
 
 #include "chain.h"
-#include "schedule.h"
+#include "recording.h"
 
 namespace oitlab::layer {
 namespace {
-
-using Step = std::function<void(VkCommandBuffer)>;
 
 constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags2 indirect = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
@@ -39,59 +30,6 @@ constexpr VkPipelineStageFlags2 drawing =
 constexpr VkPipelineStageFlags2 rendering = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
                                             VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT |
                                             VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-
-/// A command buffer while it is recorded.
-struct Recording {
-  std::vector<Node> nodes;
-  std::vector<std::vector<Step>> steps;              ///< of each node: state, then commands
-  std::vector<std::pair<std::string, Step>> state;   ///< in force: by what it sets
-  std::vector<std::pair<std::size_t, Step>> stamps;  ///< how many nodes were before each
-  int groups = 0;                                    ///< of barriers
-  bool inRendering = false;
-};
-
-Reorder initialReorder() {
-  const char* mode = std::getenv("OITLAB_REORDER");
-  const char* drop = std::getenv("OITLAB_REORDER_DROP");
-  Reorder reorder;
-  reorder.shuffle = mode != nullptr && std::string_view(mode) == "shuffle";
-  reorder.drop = drop != nullptr ? std::atoi(drop) : 0;
-  return reorder;
-}
-
-Reorder& reorder() {
-  static Reorder reorder = initialReorder();
-  return reorder;
-}
-
-Recording& recordingOf(VkCommandBuffer commands) {
-  static std::mutex mutex;
-  static std::map<VkCommandBuffer, Recording> recordings;
-  const std::lock_guard lock(mutex);
-  return recordings[commands];
-}
-
-/// State holds until it is set again; every action begins with all that is in force.
-void setState(VkCommandBuffer commands, const std::string& what, Step step) {
-  Recording& recording = recordingOf(commands);
-  std::erase_if(recording.state, [&](const auto& entry) { return entry.first == what; });
-  if (recording.inRendering) recording.steps.back().push_back(step);
-  recording.state.emplace_back(what, std::move(step));
-}
-
-void addAction(VkCommandBuffer commands, VkPipelineStageFlags2 stages, Step step) {
-  Recording& recording = recordingOf(commands);
-  if (recording.inRendering) {
-    Node& pass = recording.nodes.back();
-    pass.from = pass.to = pass.from | stages;
-    recording.steps.back().push_back(std::move(step));
-    return;
-  }
-  recording.nodes.push_back({false, stages, stages});
-  auto& steps = recording.steps.emplace_back();
-  for (const auto& entry : recording.state) steps.push_back(entry.second);
-  steps.push_back(std::move(step));
-}
 
 void wholeBarrier(VkCommandBuffer commands) {
   VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
