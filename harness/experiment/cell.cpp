@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "image/hash.h"
 #include "method/method.h"
 #include "util/json_file.h"

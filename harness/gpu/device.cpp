@@ -32,8 +32,10 @@ bool hasToolForNames(const vk::raii::PhysicalDevice& physical) {
 
 std::vector<DeviceInfo> Device::listDevices() {
   const Instance instance({});
+  const auto physicals = instance.devices();
   std::vector<DeviceInfo> devices;
-  for (const auto& physical : instance.devices()) devices.push_back(describeDevice(physical));
+  devices.reserve(physicals.size());
+  for (const auto& physical : physicals) devices.push_back(describeDevice(physical));
   return devices;
 }
 
@@ -74,6 +76,7 @@ Device::Device(const Options& options)
 void Device::choosePhysicalDevice(int index) {
   auto physicals = instance_.devices();
   std::vector<DeviceInfo> devices;
+  devices.reserve(physicals.size());
   for (const auto& physical : physicals) devices.push_back(describeDevice(physical));
   if (devices.empty())
     throw DeviceError(
@@ -85,6 +88,7 @@ void Device::choosePhysicalDevice(int index) {
   if (index < 0) index = bestDevice(devices);
   if (index < 0) {
     std::vector<std::string> reasons;
+    reasons.reserve(devices.size());
     for (const auto& device : devices)
       reasons.push_back(fmt::format("{} lacks {}", device.name, joined(missingBaseline(device))));
     fail<DeviceError>("no usable Vulkan device: {}", fmt::join(reasons, "; "));

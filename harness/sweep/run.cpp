@@ -69,6 +69,7 @@ class Sweep {
 
 std::vector<GroupSize> sizesOf(const std::vector<Group>& groups) {
   std::vector<GroupSize> sizes;
+  sizes.reserve(groups.size());
   for (const Group& group : groups) sizes.push_back(sizeOf(group));
   return sizes;
 }

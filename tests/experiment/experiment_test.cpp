@@ -152,7 +152,7 @@ TEST_F(Experiments, AViewMayBeACameraOfTheScenesFile) {
 TEST_F(Experiments, ANameThatCannotBeAFoldersIsAMistake) {
   const std::string rest = "\nscenes = [\"boxes\"]\nmethods = [\"blend\"]\n";
   for (const std::string name : {"../../evil", "a/b", "..", ".hidden", "", "a\\\\b", "a\\nb"})
-    EXPECT_THAT(errorOf("name = \"" + name + "\"" + rest),
+    EXPECT_THAT(errorOf(fmt::format("name = \"{}\"{}", name, rest)),
                 AllOf(HasSubstr("x.toml:1: the name"), HasSubstr("wanted")))
         << name;
   EXPECT_THAT(errorOf("name = \"" + std::string(200, 'a') + "\"" + rest), HasSubstr("x.toml:1"));

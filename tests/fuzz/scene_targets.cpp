@@ -11,7 +11,7 @@ namespace oitlab {
 namespace {
 
 std::filesystem::path writeFile(const std::string& name, std::string_view bytes) {
-  const auto path = fuzzFolder() / name;
+  auto path = fuzzFolder() / name;
   std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
   return path;
 }

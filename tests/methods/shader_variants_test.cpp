@@ -2,6 +2,8 @@
 // with them, which is where a CPU device spends its time; .ci/run does this before the long tests.
 #include <set>
 
+#include <fmt/format.h>
+
 #include "lucid/programs.h"
 #include "measure/clock_probe.h"
 #include "raster/block_lists.h"
@@ -82,11 +84,13 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
                                                        std::nullopt, TargetFormat::rgba16f));
   const Device& device = sharedDevice();
   int variants = 0;
-  for (const auto& [name, method] : methods()) {
+  for (const auto& entry : methods()) {
+    const std::string& name = entry.first;
+    const MethodInfo& method = entry.second;
     if (!method.missing(device.info()).empty()) continue;
     for (const Given& given : variantsOf(method)) {
       std::string what = name;
-      for (const auto& [key, value] : given) what += " " + key + "=" + value;
+      for (const auto& [key, value] : given) what += fmt::format(" {}={}", key, value);
       make(what, [&] { fixtures.front()->make(name, given); });
       ++variants;
       if (name == "lucid")

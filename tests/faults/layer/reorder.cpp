@@ -296,9 +296,10 @@ VKAPI_ATTR void VKAPI_CALL unknownCommand() {
   std::abort();
 }
 
-#define KEPT(function, own)                                                               \
-  Hook {                                                                                  \
-#function, reinterpret_cast < PFN_vkVoidFunction>(static_cast <PFN_##function>(&own)) \
+// The conversion to PFN_... checks that `own` has the function's arguments.
+#define KEPT(function, own)                                                                 \
+  Hook {                                                                                    \
+#function, reinterpret_cast < PFN_vkVoidFunction>(static_cast <PFN_##function>(&(own))) \
   }
 
 }  // namespace

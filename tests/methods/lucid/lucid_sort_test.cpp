@@ -2,6 +2,8 @@
 // not use on devices with small subgroups.
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "gpu/barrier.h"
 #include "lucid/lucid_types.h"
 #include "raster/raster_defines.h"
@@ -33,6 +35,7 @@ std::vector<std::vector<std::uint32_t>> ordersOf(const std::vector<std::vector<f
     keys.insert(keys.end(), list.begin(), list.end());
   }
   std::vector<lucid::PixelJob> jobs;
+  jobs.reserve(blocks.size());
   for (const auto& block : blocks) jobs.push_back({block, ~0u});
   std::reverse(blocks.begin(), blocks.end());  // long lists are stored from the end downwards
   lucid::LucidCounters counters{};

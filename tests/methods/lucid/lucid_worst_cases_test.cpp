@@ -18,7 +18,7 @@ RenderFixture::Result expectRight(const Scene& scene, int width, int height,
   SCOPED_TRACE(scene.name);
   const CpuImage truth = renderOnCpu(scene, findView(scene, "default"), width, height);
   RenderFixture fixture(scene, std::uint32_t(width), std::uint32_t(height));
-  const auto ours = fixture.render("lucid");
+  auto ours = fixture.render("lucid");
   const Verdict verdict = judge(ours.image, truth, tolerance);
   const double pixels = double(width) * height;
   const auto fragments = double(truth.fragmentCount());
