@@ -139,7 +139,8 @@ void addRun(CLI::App& program, Action& action) {
       ->capture_default_str()
       ->type_name("I/N");
   verb->add_option("--profile", options->profile,
-                   "full, or a profile of the file; auto: cpu on a CPU device, else full")
+                   "full, brief (the same cells, measured briefly), or a profile of the file; "
+                   "auto: cpu on a CPU device, else full")
       ->capture_default_str()
       ->type_name("NAME");
   verb->add_option("--detail", options->detail,

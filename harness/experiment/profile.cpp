@@ -4,6 +4,33 @@
 
 namespace oitlab {
 
+namespace {
+
+/// The most that [measure] asks for in the profile `brief`, which every experiment has.
+constexpr std::string_view briefLimits = R"(
+time_limit = 2
+block_seconds = 0.02
+min_blocks = 6  # fewer give no interval
+max_blocks = 20
+min_frames = 1
+max_frames = 20
+stage_frames = 5
+)";
+
+/// Lowers [measure] to those limits.
+void makeBrief(toml::table& root) {
+  if (!root.contains("measure")) root.insert("measure", toml::table());
+  toml::table* measure = root.get("measure")->as_table();
+  if (!measure) return;  // a mistake, which is found when it is read
+  for (auto&& [key, limit] : toml::parse(briefLimits)) {
+    const toml::node* given = measure->get(key);
+    if (!given || given->value<double>() > limit.value<double>())
+      measure->insert_or_assign(key, limit);
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> profileNames(const std::string& file, const toml::table& root) {
   const toml::node* node = root.get("profile");
   if (node == nullptr) return {};
@@ -22,14 +49,18 @@ std::vector<std::string> profileNames(const std::string& file, const toml::table
 
 std::string applyProfile(const std::string& file, toml::table& root,
                          const ExperimentOptions& options) {
-  const std::vector<std::string> names = profileNames(file, root);
+  std::vector<std::string> names = profileNames(file, root);
   if (options.profile == "full") return "full";
-  const bool there = std::find(names.begin(), names.end(), options.profile) != names.end();
-  if (!there && !options.profileRequired) return "full";
-  if (!there)
-    fail<InputError>("{}: no [profile.{}]{}; there are: full{}{}", file, options.profile,
-                     didYouMean(options.profile, names), names.empty() ? "" : ", ",
-                     joinNames(names));
+  const bool brief = options.profile == "brief";
+  if (brief) makeBrief(root);
+  if (std::find(names.begin(), names.end(), options.profile) == names.end()) {
+    if (brief) return "brief";
+    if (!options.profileRequired) return "full";
+    names.insert(names.begin(), "full");
+    if (std::find(names.begin(), names.end(), "brief") == names.end()) names.push_back("brief");
+    fail<InputError>("{}: no [profile.{}]{}; there are: {}", file, options.profile,
+                     didYouMean(options.profile, names), joinNames(names));
+  }
   toml::node& chosen = *root.get("profile")->as_table()->get(options.profile);
   if (!chosen.is_table())
     fail<InputError>("{}:{}: '{}' must be a table: [profile.{}]", file, chosen.source().begin.line,

@@ -1,6 +1,7 @@
 // Experiments: what a TOML file spans, how it is dealt out, and what its mistakes are answered
 // with.
 #include "experiment/experiment.h"
+#include "experiment/measure_settings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -248,6 +249,28 @@ TEST_F(Experiments, AProfileReplacesWhatItNames) {
                                      "boxes blend order=sorted 32x16 1"));
 }
 
+TEST_F(Experiments, EveryExperimentHasABriefProfile) {
+  const auto path = folder_ / "p.toml";
+  const auto brief = [&](const std::string& text) {
+    writeFileAtomically(path, "scenes = ['boxes']\nmethods = ['blend']\n" + text);
+    const Experiment read = readExperiment(path, {.profile = "brief", .profileRequired = true});
+    EXPECT_EQ(read.profile, "brief");
+    EXPECT_EQ(read.cells.size(), 1u);
+    return describeMeasureSettings(read.measure).dump();
+  };
+  const std::string limits =
+      R"({"block_seconds":0.02,"max_blocks":20,"max_frames":20,"min_blocks":6,"min_frames":1,)"
+      R"("relative_spread":0.005,"seed":1,"stage_frames":5,"time_limit":2.0})";
+  EXPECT_EQ(brief(""), limits);
+  EXPECT_EQ(brief("[measure]\nmin_blocks = 1000\nmax_blocks = 1000\n"), limits);
+  EXPECT_THAT(brief("[measure]\nmin_blocks = 1\nmax_blocks = 1\ntime_limit = 0.5\n"),
+              AllOf(HasSubstr(R"("max_blocks":1,)"), HasSubstr(R"("min_blocks":1,)"),
+                    HasSubstr(R"("time_limit":0.5)")))
+      << "less stays less";
+  EXPECT_THAT(brief("[profile.brief.measure]\nstage_frames = 20\n"),
+              AllOf(HasSubstr(R"("stage_frames":20)"), HasSubstr(R"("max_blocks":20,)")));
+}
+
 TEST_F(Experiments, DetailAndSizeOfTheCommandLineReplaceAllOfTheFile) {
   const auto path = folder_ / "p.toml";
   writeFileAtomically(path, profiled);
@@ -269,8 +292,9 @@ TEST_F(Experiments, AProfileThatIsNotThere) {
     readExperiment(path, {.profile = "cpv", .profileRequired = true});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("p.toml"), HasSubstr("[profile.cpv]"),
-                                    HasSubstr("did you mean 'cpu'"), HasSubstr("full, cpu, tiny")));
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("p.toml"), HasSubstr("[profile.cpv]"),
+                      HasSubstr("did you mean 'cpu'"), HasSubstr("full, cpu, tiny, brief")));
   }
   writeFileAtomically(path,
                       "scenes = [\"boxes\"]\nmethods = [\"blend\"]\n[profile.cpu]\nseeds = 3\n");
@@ -313,7 +337,9 @@ TEST_F(Experiments, EveryExperimentOfTheProjectCanBeRead) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "views") continue;
     for (const char* profile : {"full", "brief", "cpu"}) {
-      const Experiment experiment = readExperiment(entry.path(), {.profile = profile});
+      const bool required = std::string_view(profile) == "brief";  // not all need a cpu profile
+      const Experiment experiment =
+          readExperiment(entry.path(), {.profile = profile, .profileRequired = required});
       EXPECT_FALSE(experiment.cells.empty()) << entry.path();
       EXPECT_EQ(experiment.name, entry.path().stem()) << "results go to a folder of this name";
     }
