@@ -127,11 +127,7 @@ void Device::openDevice() {
   deviceInfo.setPNext(&enabled.get<vk::PhysicalDeviceFeatures2>());
   std::vector<const char*> extensions;
   auto enable = [&](const char* name, auto& features) {
-    const auto all = physical_.enumerateDeviceExtensionProperties();
-    const bool there = std::any_of(all.begin(), all.end(), [&](const auto& extension) {
-      return extension.extensionName == std::string_view(name);
-    });
-    if (!there) return false;
+    if (!hasExtension(physical_, name)) return false;
     extensions.push_back(name);
     features.pNext = const_cast<void*>(deviceInfo.pNext);
     deviceInfo.setPNext(&features);
@@ -143,6 +139,10 @@ void Device::openDevice() {
   vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR uniformFlow(VK_TRUE);
   subgroupUniformControlFlow_ =
       enable(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME, uniformFlow);
+  vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT interlock;
+  interlock.fragmentShaderPixelInterlock = VK_TRUE;
+  if (info_.has("fragmentShaderPixelInterlock"))
+    enable(VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME, interlock);
   deviceInfo.setPEnabledExtensionNames(extensions);
   try {
     device_ = vk::raii::Device(physical_, deviceInfo);

@@ -25,7 +25,22 @@ std::string versionName(std::uint32_t version) {
                      VK_API_VERSION_PATCH(version));
 }
 
+/// The structures of extensions must not be queried from a device without them.
+bool hasPixelInterlock(const vk::raii::PhysicalDevice& physical) {
+  using Interlock = vk::PhysicalDeviceFragmentShaderInterlockFeaturesEXT;
+  if (!hasExtension(physical, VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME)) return false;
+  const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, Interlock>();
+  return chain.get<Interlock>().fragmentShaderPixelInterlock == VK_TRUE;
+}
+
 }  // namespace
+
+bool hasExtension(const vk::raii::PhysicalDevice& physical, std::string_view name) {
+  const auto all = physical.enumerateDeviceExtensionProperties();
+  return std::any_of(all.begin(), all.end(), [&](const auto& extension) {
+    return std::string_view(extension.extensionName.data()) == name;
+  });
+}
 
 FeatureChain queryFeatures(const vk::raii::PhysicalDevice& physical) {
   return physical
@@ -100,6 +115,7 @@ DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical) {
   FeatureChain chain = queryFeatures(physical);
   for (const NamedFeature& feature : namedFeatures(chain))
     info.features[feature.name] = *feature.value == VK_TRUE;
+  info.features["fragmentShaderPixelInterlock"] = hasPixelInterlock(physical);
   using Subgroup = vk::SubgroupFeatureFlagBits;
   const vk::SubgroupFeatureFlags wanted = Subgroup::eBasic | Subgroup::eVote |
                                           Subgroup::eArithmetic | Subgroup::eBallot |

@@ -21,6 +21,8 @@ FeatureChain queryFeatures(const vk::raii::PhysicalDevice& physical);
 /// `oitlab info` prints, and which ones are the baseline.
 std::vector<NamedFeature> namedFeatures(FeatureChain& chain);
 
+bool hasExtension(const vk::raii::PhysicalDevice& physical, std::string_view name);
+
 DeviceInfo describeDevice(const vk::raii::PhysicalDevice& physical);
 
 }  // namespace oitlab

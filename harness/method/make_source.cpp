@@ -41,7 +41,10 @@ std::unique_ptr<FragmentSource> makeSource(const MethodContext& context, bool de
           "deliver={} needs source=compute: hardware blends a pixel's fragments in the order of "
           "submission",
           deliver);
-    return std::make_unique<HardwareSource>(device, scene, target, memory);
+    return std::make_unique<HardwareSource>(
+        device, scene, target, memory,
+        HardwareSource::Options{.withoutInterlock =
+                                    std::getenv("OITLAB_WITHOUT_INTERLOCK") != nullptr});
   }
   // For tests: a frame must not depend on what it has not written.
   const bool poison = std::getenv("OITLAB_POISON") != nullptr;

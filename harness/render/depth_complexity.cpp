@@ -51,7 +51,9 @@ class FragmentCounter : public Method {
 
   std::unique_ptr<FragmentSource> makeSource(const Device& device, const GpuScene& scene,
                                              const Target& target, bool byHardware) {
-    if (byHardware) return std::make_unique<HardwareSource>(device, scene, target, unlisted_);
+    if (byHardware)
+      return std::make_unique<HardwareSource>(device, scene, target, unlisted_,
+                                              HardwareSource::Options{});
     return std::make_unique<ComputeSource>(device, scene, target, unlisted_,
                                            ComputeSource::Options{});
   }

@@ -1,5 +1,6 @@
 #include "source/hardware_source.h"
 
+#include "gpu/struct_size.h"
 #include "source/program_contract.h"
 #include "source/program_defines.h"
 #include "util/check.h"
@@ -22,8 +23,14 @@ vk::PipelineColorBlendAttachmentState blendOf(int operation) {
 }  // namespace
 
 HardwareSource::HardwareSource(const Device& device, const GpuScene& scene, const Target& target,
-                               MemoryLedger& memory)
-    : device_(device), scene_(scene), target_(target), memory_(memory), samples_(device) {}
+                               MemoryLedger& memory, const Options& options)
+    : device_(device),
+      scene_(scene),
+      target_(target),
+      memory_(memory),
+      options_(options),
+      states_(device, target, memory),
+      samples_(device) {}
 
 void HardwareSource::checkFeature(const char* feature, const char* why) const {
   if (!device_.info().has(feature))
@@ -32,11 +39,9 @@ void HardwareSource::checkFeature(const char* feature, const char* why) const {
 }
 
 FragmentPass HardwareSource::make(const FragmentProgram& program) {
-  if (program.access == Access::exclusive)
-    fail<DeviceError>(
-        "source=hardware has no pixel for one fragment at a time yet (fragment shader interlock); "
-        "take source=compute");
-  if (program.access == Access::none)
+  if (program.access == Access::exclusive && !options_.withoutInterlock)
+    checkFeature("fragmentShaderPixelInterlock", "to give a pixel to one fragment at a time");
+  if (program.access != Access::blended)
     checkFeature("fragmentStoresAndAtomics", "to store fragments from fragment shaders");
   if (program.needsId) checkFeature("geometryShader", "for primitive ids in fragment shaders");
   Pass pass{.program = program, .fragments = {}, .composite = {}, .sums = {}, .bindings = {}};
@@ -48,6 +53,22 @@ FragmentPass HardwareSource::make(const FragmentProgram& program) {
     description.depthFormat = description.stencilFormat = program.depthStencilFormat;
     description.stencil = program.stencil;
   }
+  if (program.access == Access::blended) addTargets(program, pass, description);
+  if (program.access == Access::exclusive) addStates(program, description);
+  pass.fragments = makeProgram(program, [&] { return Pipeline::graphics(device_, description); });
+  if (pass.hasComposite()) pass.composite = makeComposite(program);
+  passes_.push_back(std::move(pass));
+  Pass& made = passes_.back();
+  if (!made.sums.empty()) {
+    std::vector<const GpuImage*> images;
+    for (const GpuImage& image : made.sums) images.push_back(&image);
+    made.bindings.emplace(device_, scene_, target_, images);
+  }
+  return {passes_.size() - 1};
+}
+
+void HardwareSource::addTargets(const FragmentProgram& program, Pass& pass,
+                                Pipeline::Graphics& description) {
   if (program.isOnTarget()) {
     description.colorFormats = {vulkanFormat(target_.format())};
     description.blends = {blendOf(COMBINE_OVER)};
@@ -63,36 +84,38 @@ FragmentPass HardwareSource::make(const FragmentProgram& program) {
   }
   if (description.blends.size() > 1)
     checkFeature("independentBlend", "to combine several sums in different ways");
-  pass.fragments = makeProgram(program, [&] { return Pipeline::graphics(device_, description); });
-  if (!pass.sums.empty())
-    pass.composite = makeProgram(program, [&] {
-      return Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
-                                          .fragmentShader = "source/composite.frag",
-                                          .defines = programDefines(program),
-                                          .colorFormats = {vulkanFormat(target_.format())},
-                                          .depthFormat = Target::depthFormat,
-                                          .depthTest = false,
-                                          .blends = {premultipliedOver()}});
-    });
-  passes_.push_back(std::move(pass));
-  Pass& made = passes_.back();
-  if (!made.sums.empty()) {
-    std::vector<const GpuImage*> images;
-    for (const GpuImage& image : made.sums) images.push_back(&image);
-    made.bindings.emplace(device_, scene_, target_, images);
-  }
-  return {passes_.size() - 1};
+}
+
+void HardwareSource::addStates(const FragmentProgram& program, Pipeline::Graphics& description) {
+  if (!options_.withoutInterlock) description.defines["INTERLOCK"] = "1";
+  const auto words = makeProgram(program, [&] {
+    return device_.shaders().compile(description.fragmentShader, description.defines);
+  });
+  states_.reserve(structBytes(words, "PixelState"));
+}
+
+Pipeline HardwareSource::makeComposite(const FragmentProgram& program) const {
+  return makeProgram(program, [&] {
+    return Pipeline::graphics(device_, {.vertexShader = "common/fullscreen.vert",
+                                        .fragmentShader = "source/composite.frag",
+                                        .defines = programDefines(program),
+                                        .colorFormats = {vulkanFormat(target_.format())},
+                                        .depthFormat = Target::depthFormat,
+                                        .depthTest = false,
+                                        .blends = {premultipliedOver()}});
+  });
 }
 
 std::uint64_t HardwareSource::begin(const Frame& frame, const Submission& submission) {
   submission_ = submission;
   samples_.reset(frame);
   counts_ = true;
-  return frame.constants;
+  return states_.empty() ? frame.constants : states_.begin(frame);
 }
 
 void HardwareSource::addCounters(std::map<std::string, std::uint64_t>& counters) {
   for (const auto& [name, value] : samples_.counters()) counters[name] = value;
+  if (const auto taken = states_.taken()) counters["fragments"] = *taken;
 }
 
 void HardwareSource::draw(const Frame& frame, const FragmentRun& run) const {
@@ -118,7 +141,10 @@ void HardwareSource::runBytes(const Frame& frame, const std::string& stage, Frag
     recordPass();
   else
     frame.stage(stage, recordPass);
-  if (!pass.sums.empty()) frame.stage("composite", [&] { composite(frame, pass, push); });
+  if (pass.hasComposite()) frame.stage("composite", [&] { composite(frame, pass, push); });
+  if (pass.program.access == Access::exclusive && counts_ && frame.instrumented)
+    frame.stage("count", [&] { states_.count(frame); });
+  if (pass.program.access != Access::none) counts_ = false;
 }
 
 void HardwareSource::accumulate(const Frame& frame, const Pass& pass,
@@ -136,12 +162,16 @@ void HardwareSource::accumulate(const Frame& frame, const Pass& pass,
       frame.renderDepthTested({}, record);
     return;
   }
+  if (pass.program.access == Access::exclusive) {
+    states_.open(frame);
+    frame.renderDepthTested({}, record);
+    return;
+  }
   const auto recordCounted = [&] {
     if (counts_)
       samples_.count(frame, record);
     else
       record();
-    counts_ = false;
   };
   if (pass.program.isOnTarget()) {
     frame.renderOnTarget(recordCounted);
@@ -161,12 +191,16 @@ void HardwareSource::accumulate(const Frame& frame, const Pass& pass,
 
 void HardwareSource::composite(const Frame& frame, const Pass& pass,
                                std::span<const std::byte> push) const {
+  if (pass.program.access == Access::exclusive)
+    frame.barrier(Stage::eFragmentShader | Stage::eColorAttachmentOutput,
+                  Stage::eFragmentShader | Stage::eComputeShader | Stage::eColorAttachmentOutput);
   for (const GpuImage& image : pass.sums)
     image.transition(frame.commands, Layout::eColorAttachmentOptimal,
                      Layout::eShaderReadOnlyOptimal, Stage::eColorAttachmentOutput,
                      Access2::eColorAttachmentWrite, Stage::eFragmentShader, Access2::eShaderRead);
   frame.renderOnTarget([&] {
-    pass.composite.bind(frame.commands, pass.bindings->set(), push);
+    pass.composite.bind(frame.commands, pass.bindings ? pass.bindings->set() : frame.bindings,
+                        push);
     frame.drawFullscreen();
   });
 }

@@ -11,7 +11,7 @@
 //                     The pixel's premultiplied color. False: nothing is there. Not needed on the target itself.
 //   ACCESS_EXCLUSIVE  struct PixelState
 //                     void openPixel(uvec2 pixel, out PixelState state);
-//                     bool addFragment(inout PixelState state, Fragment f);  // false: the fragment is cut out
+//                     bool addFragment(inout PixelState state, Fragment f);  // false: it is cut out, nothing changed
 //                     bool closePixel(PixelState state, out vec4 color);     // as composite()
 //                     One invocation at a time works on a pixel.
 #ifndef OITLAB_SOURCE_FRAGMENT_GLSL

@@ -9,6 +9,7 @@
 #include "raster/block_lists.h"
 #include "render/depth_complexity.h"
 #include "source/compute_source.h"
+#include "source/hardware_source.h"
 #include "support/gpu.h"
 #include "util/error.h"
 #include "util/paths.h"
@@ -110,6 +111,10 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
     ComputeSource(device, fixtures.front()->renderer().scene(), fixtures.front()->target(), memory,
                   {.deliver = deliver})
         .makeAllPrograms();
+  // No method of these is exclusive.
+  HardwareSource(device, fixtures.front()->renderer().scene(), fixtures.front()->target(), memory,
+                 {.withoutInterlock = !device.info().has("fragmentShaderPixelInterlock")})
+      .make({.file = "../tests/data/programs/over.glsl", .access = Access::exclusive});
   ClockProbe probe(device, 1, 1);
   fixtures.back()->render("blend");
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());

@@ -1,6 +1,6 @@
 // The fragment sources against each other, against lucid, and against the CPU renderer.
+#include "support/sources.h"
 #include "support/planted.h"
-#include "support/truth.h"
 
 #include <gmock/gmock.h>
 
@@ -12,30 +12,7 @@
 namespace oitlab::testing {
 namespace {
 
-using Given = std::map<std::string, std::string>;
-
 class Sources : public GpuTest {};
-
-Given onCompute(Given given = {}) {
-  given["source"] = "compute";
-  return given;
-}
-
-/// Scenes with textures, opaque surfaces, colours, smooth normals, cutoffs, and none of these.
-std::vector<Scene> variedScenes() {
-  std::vector<Scene> scenes;
-  for (const auto& [name, detail] : {std::pair{"boxes", 1.0f},
-                                     {"planes", 1.0f},
-                                     {"teapot", 0.3f},
-                                     {"scrubpine", 0.3f},
-                                     {"sanmiguel", 0.003f},
-                                     {"hairball", 0.005f},
-                                     {"smoke", 0.5f}})
-    scenes.push_back(loadScene({name, {}, detail}));
-  for (const std::uint64_t seed : {1, 2, 3}) scenes.push_back(randomSoup(seed, 400));
-  for (Scene& scene : disorderlyScenes()) scenes.push_back(std::move(scene));
-  return scenes;
-}
 
 // No tolerance: both take the same fragments, order them by the same depths, and blend alike.
 TEST_F(Sources, ReferenceFromComputeIsLucidBitForBit) {
@@ -67,25 +44,6 @@ TEST_F(Sources, EveryExactMethodFromComputeIsTheReference) {
       EXPECT_EQ(fixture.render(method, onCompute(given)).hash, hash)
           << name << ": " << method << " " << ::testing::PrintToString(given);
   }
-}
-
-/// Pixels that differ by more than `allowed`: those whose fragments are beyond doubt, and the rest.
-struct Differences {
-  std::uint64_t certain = 0, inDoubt = 0;
-};
-Differences differencesOf(const Image& a, const Image& b, const CpuImage& truth, double allowed) {
-  Differences found;
-  for (int y = 0; y < truth.height; ++y)
-    for (int x = 0; x < truth.width; ++x) {
-      double difference = 0;
-      for (int c = 0; c < 3; ++c)
-        difference = std::max<double>(difference, std::abs(a.at(x, y)[c] - b.at(x, y)[c]));
-      const std::size_t i = truth.index(x, y);
-      // Hardware interpolates over vertices that are snapped, which moves colours that much.
-      if (difference <= allowed + double(truth.snapping[i])) continue;
-      ++(truth.doubts[i] == 0 ? found.certain : found.inDoubt);
-    }
-  return found;
 }
 
 // A device may take a sample within 1/256 pixel of an edge to the other side of it, and depths
