@@ -3,6 +3,7 @@
 #include "raster/raster_defines.h"
 #include "source/program_contract.h"
 #include "source/program_defines.h"
+#include "source/state_size.h"
 #include "util/error.h"
 
 namespace oitlab {
@@ -96,6 +97,8 @@ Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
                                    {"DELIVER", std::to_string(options_.deliver)},
                                    {"TEAMS", text(teamsOf(device_))},
                                    {"VERIFY_LOOPS", raster::verifiesLoops(device_) ? "1" : "0"}});
+  if (program.access == Access::exclusive)
+    stateBytes(device_, program, "source/compute.comp", defines);  // throws where it is too large
   return makeProgram(program, [&] {
     return Pipeline::compute(device_, "source/compute.comp", defines, {},
                              device_.info().subgroupSize, program.file + " with source=compute");

@@ -1,8 +1,8 @@
 #include "source/hardware_source.h"
 
-#include "gpu/struct_size.h"
 #include "source/program_contract.h"
 #include "source/program_defines.h"
+#include "source/state_size.h"
 #include "util/check.h"
 #include "util/error.h"
 
@@ -88,10 +88,7 @@ void HardwareSource::addTargets(const FragmentProgram& program, Pass& pass,
 
 void HardwareSource::addStates(const FragmentProgram& program, Pipeline::Graphics& description) {
   if (!options_.withoutInterlock) description.defines["INTERLOCK"] = "1";
-  const auto words = makeProgram(program, [&] {
-    return device_.shaders().compile(description.fragmentShader, description.defines);
-  });
-  states_.reserve(structBytes(words, "PixelState"));
+  states_.reserve(stateBytes(device_, program, description.fragmentShader, description.defines));
 }
 
 Pipeline HardwareSource::makeComposite(const FragmentProgram& program) const {

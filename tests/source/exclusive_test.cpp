@@ -9,6 +9,7 @@
 #include "method/make_source.h"
 #include "method/one_pass_method.h"
 #include "quality/compare.h"
+#include "source/state_size.h"
 #include "support/environment.h"
 #include "support/planted.h"
 #include "support/sources.h"
@@ -147,6 +148,39 @@ TEST_F(Exclusive, WithoutInterlockOneLineSaysWhyNot) {
   }
 }
 
+Defines definesForHardware(const FragmentProgram& program) {
+  Defines defines = program.defines;
+  defines.insert({{"FRAGMENT_PROGRAM", program.file},
+                  {"ACCESS", std::to_string(ACCESS_EXCLUSIVE)},
+                  {"HAS_ID", "1"},
+                  {"INTERLOCK", "1"}});
+  return defines;
+}
+
+// 21 layers of 24 bytes are 504 bytes, the largest state is 512.
+TEST_F(Exclusive, AStateTooLargeForRegistersIsRefusedInOneLine) {
+  const auto sizeOf = [](const FragmentProgram& program) {
+    return stateBytes(sharedDevice(), program, "source/hardware.frag", definesForHardware(program));
+  };
+  EXPECT_EQ(sizeOf(nearestLayers(21)), 504u);
+  EXPECT_THROW(sizeOf(nearestLayers(22)), DeviceError);
+
+  RenderFixture fixture(randomSoup(1, 5), 8, 8);
+  const ScopedEnvironment withoutInterlock("OITLAB_WITHOUT_INTERLOCK", "1");
+  for (const Given& given : {Given{}, onCompute()}) {
+    try {
+      makeOne(fixture, nearestLayers(22), given);
+      ADD_FAILURE() << "it was made";
+    } catch (const DeviceError& error) {
+      EXPECT_EQ(std::string(error.what()),
+                "shaders/../tests/data/toy/shaders/nearest_layers/nearest.glsl: PixelState has 528 "
+                "bytes, 132 registers of 32 bits; at most 128 fit beside the source's own "
+                "(NVIDIA's GPUs give an invocation 255, AMD's 256; Vulkan does not tell). Keep "
+                "less per pixel, or access=none with buffers of your own");
+    }
+  }
+}
+
 /// The instruction `op` whose operand `index` is `value`, as its operands; empty if there is none.
 std::vector<std::uint32_t> instruction(const std::vector<std::uint32_t>& words, spv::Op op,
                                        std::size_t index, std::uint32_t value) {
@@ -159,12 +193,7 @@ std::vector<std::uint32_t> instruction(const std::vector<std::uint32_t>& words, 
 }
 
 std::vector<std::uint32_t> compileForHardware(const FragmentProgram& program) {
-  Defines defines = program.defines;
-  defines.insert({{"FRAGMENT_PROGRAM", program.file},
-                  {"ACCESS", std::to_string(ACCESS_EXCLUSIVE)},
-                  {"HAS_ID", "1"},
-                  {"INTERLOCK", "1"}});
-  return sharedDevice().shaders().compile("source/hardware.frag", defines);
+  return sharedDevice().shaders().compile("source/hardware.frag", definesForHardware(program));
 }
 
 // Also on devices that cannot make a pipeline of it.
