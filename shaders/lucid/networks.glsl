@@ -26,11 +26,15 @@
 #define SORT_8(k, i, up) SORT_4(k, i, true) SORT_4(k, i + 4, false) MERGE_8(k, i, up)
 #define SORT_16(k, i, up) SORT_8(k, i, true) SORT_8(k, i + 8, false) MERGE_16(k, i, up)
 
-// F(i) for the first n numbers.
+// F(i) for i from 0 to n - 1.
 #define EACH_1(F) F(0)
 #define EACH_2(F) F(0) F(1)
 #define EACH_4(F) EACH_2(F) F(2) F(3)
 #define EACH_8(F) EACH_4(F) F(4) F(5) F(6) F(7)
 #define EACH_16(F) EACH_8(F) F(8) F(9) F(10) F(11) F(12) F(13) F(14) F(15)
+
+// The name that ends with a macro's number: NETWORK(SORT_, N) is SORT_4 where N is 4.
+#define NETWORK(name, n) NETWORK_OF(name, n)  // expands n first
+#define NETWORK_OF(name, n) name##n
 
 #endif

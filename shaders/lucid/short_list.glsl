@@ -14,19 +14,9 @@ void orderList(HalfBlock block) { placeMask = sortList(gl_SubgroupID * LIST, blo
 uint placeOf(HalfBlock block, uint i) { return keys[gl_SubgroupID * LIST + i] & placeMask; }
 
 #else
-#define SORT_KEYS 1u
-#define WITHIN SORT_1
-#define MERGE MERGE_1
-#define EACH EACH_1
-#define SORT sort1
-#define STORE store1
+#define SORT_KEYS 1
 #include "lucid/register_sort.glsl"
-#define SORT_KEYS 2u
-#define WITHIN SORT_2
-#define MERGE MERGE_2
-#define EACH EACH_2
-#define SORT sort2
-#define STORE store2
+#define SORT_KEYS 2
 #include "lucid/register_sort.glsl"
 
 uint firstPlace, secondPlace;  // of ranks lane and SUBGROUP_SIZE + lane
@@ -34,11 +24,11 @@ uint firstPlace, secondPlace;  // of ranks lane and SUBGROUP_SIZE + lane
 void orderList(HalfBlock block) {
   if (block.count <= SUBGROUP_SIZE) {
     uint keys[1];
-    const uint placeMask = sort1(block, keys);
+    const uint placeMask = sortInRegisters(block, keys);
     firstPlace = keys[0] & placeMask;
   } else {
     uint keys[2];
-    const uint placeMask = sort2(block, keys), lane = gl_SubgroupInvocationID, half_ = SUBGROUP_SIZE / 2u;
+    const uint placeMask = sortInRegisters(block, keys), lane = gl_SubgroupInvocationID, half_ = SUBGROUP_SIZE / 2u;
     const uint even0 = subgroupShuffle(keys[0], lane / 2u), odd0 = subgroupShuffle(keys[1], lane / 2u);
     const uint even1 = subgroupShuffle(keys[0], half_ + lane / 2u), odd1 = subgroupShuffle(keys[1], half_ + lane / 2u);
     firstPlace = ((lane & 1u) == 0u ? even0 : odd0) & placeMask;

@@ -23,32 +23,17 @@ void sortHalfBlock(HalfBlock block) {
   teamBarrier();
 }
 #else
-#define SORT_KEYS 4u
-#define WITHIN SORT_4
-#define MERGE MERGE_4
-#define EACH EACH_4
-#define SORT sort4
-#define STORE store4
+#define SORT_KEYS 4
 #include "lucid/register_sort.glsl"
-#define SORT_KEYS 8u
-#define WITHIN SORT_8
-#define MERGE MERGE_8
-#define EACH EACH_8
-#define SORT sort8
-#define STORE store8
+#define SORT_KEYS 8
 #include "lucid/register_sort.glsl"
-#define SORT_KEYS 16u
-#define WITHIN SORT_16
-#define MERGE MERGE_16
-#define EACH EACH_16
-#define SORT sort16
-#define STORE store16
+#define SORT_KEYS 16
 #include "lucid/register_sort.glsl"
 
 void sortHalfBlock(HalfBlock block) {
-  if (block.count <= 4u * SUBGROUP_SIZE) store4(block);
-  else if (block.count <= 8u * SUBGROUP_SIZE) store8(block);
-  else store16(block);
+  if (block.count <= 4u * SUBGROUP_SIZE) sortAndStore4(block);
+  else if (block.count <= 8u * SUBGROUP_SIZE) sortAndStore8(block);
+  else sortAndStore16(block);
 }
 #endif
 
