@@ -14,7 +14,7 @@ from ..formats import NOTHING
 from .clock import frame_note, stage_note
 from .device_notes import note_of
 from .fragment_source import COMPUTE, HARDWARE, named, source_of
-from .labels import add_labels
+from .labels import add_labels, records
 from .statistics import OTHER_RUN, Comparison, compare_setting, disagreements, headline_source
 
 CONTEXT = ("experiment", "device", "driver", "driver_info", "commit", "build", "validation")
@@ -46,6 +46,14 @@ class Section:
     def _settings(self) -> list[tuple[str, pandas.DataFrame]]:
         return list(self.table.groupby("setting", sort=False))
 
+    @functools.cached_property
+    def rows(self) -> dict[str, list[dict]]:
+        """The cells of each setting as dictionaries, in the order of the table."""
+        found: dict[str, list[dict]] = {}
+        for row in records(self.table):
+            found.setdefault(row["setting"], []).append(row)
+        return found
+
 
 def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.DataFrame:
     """Adds `baseline`, `baseline_name`, `ratio`, `ratio.low`, `ratio.high`, `ratio.blocks`, `verdict` and
@@ -58,9 +66,13 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
     """
     compared, beside = {}, {}
     measured = table[table["status"] == "ok"]
-    for _, context in measured.groupby(list(CONTEXT), dropna=False):
-        settings = [{key: cells[key] for key in setting["key"]}
-                    for _, setting in context.groupby(list(SETTING), dropna=False)]
+    # Grouped at once: a table for each group takes milliseconds, and a pack may have 10,000 settings.
+    contexts: dict[int, dict[int, dict[str, dict]]] = {}
+    for context, setting, key in zip(_group_numbers(measured, CONTEXT),
+                                     _group_numbers(measured, CONTEXT + SETTING), measured["key"]):
+        contexts.setdefault(context, {}).setdefault(setting, {})[key] = cells[key]
+    for of_context in contexts.values():
+        settings = list(of_context.values())
         source = headline_source(settings)
         for setting in settings:
             compared |= compare_setting(setting, source)
@@ -88,6 +100,11 @@ def add_comparisons(table: pandas.DataFrame, cells: dict[str, dict]) -> pandas.D
     return _add_hardware_ratios(table, cells, beside) if beside else table
 
 
+def _group_numbers(table: pandas.DataFrame, columns: tuple[str, ...]) -> pandas.Series:
+    """For each row the number of its group, in the order of the groups' values."""
+    return table.groupby(list(columns), dropna=False).ngroup()
+
+
 def _add_hardware_ratios(table: pandas.DataFrame, cells: dict[str, dict],
                          compared: dict[str, tuple[str, Comparison]]) -> pandas.DataFrame:
     """Adds the ratios to hardware blending, where that was measured."""
@@ -111,8 +128,9 @@ def baselines_of(table: pandas.DataFrame) -> str:
 def make_sections(cells: dict[str, dict], table: pandas.DataFrame) -> list[Section]:
     """One section for each context of the table, whose cells are given by key; largest first within an
     experiment. Of more than MOST_SECTIONS contexts those with most cells."""
-    groups = [group for _, group in table.groupby(list(CONTEXT), dropna=False)]
-    groups = sorted(groups, key=len, reverse=True)[:MOST_SECTIONS]
+    numbers = _group_numbers(table, CONTEXT)
+    largest = sorted(numbers.value_counts().items(), key=lambda of: (-of[1], of[0]))[:MOST_SECTIONS]
+    groups = [table[numbers == number] for number, _ in largest]
     groups.sort(key=lambda group: (group["experiment"].iloc[0], -len(group)))
     # Only the parts of the context that differ are needed to tell titles apart.
     varying = [c for c in ("commit", "build", "validation") if table[c].nunique() > 1]

@@ -27,6 +27,7 @@ FEW_CHARTS = 4
 # Of a section with charts: nobody can tell more apart, and laying them out takes time that grows with the
 # square of their number.
 MOST_METHODS, MOST_CELLS = 100, 3000
+MOST_SETTINGS = 1000  # of all sections with charts: each takes some ms for each chart
 
 
 @dataclass(frozen=True)
@@ -104,15 +105,23 @@ def kinds_with(asked: tuple[Curve, ...]) -> dict[str, Kind]:
     return kinds | KINDS
 
 
-def _is_crowded(section: Section) -> bool:
-    return section.table["method"].nunique() > MOST_METHODS or len(section.table) > MOST_CELLS
+def _crowded(sections: list[Section]) -> list[bool]:
+    """Which sections have too much for charts, of their own or after those before them."""
+    found, settings = [], 0
+    for section in sections:
+        count = section.table["setting"].nunique()
+        found.append(section.table["method"].nunique() > MOST_METHODS or len(section.table) > MOST_CELLS
+                     or settings + count > MOST_SETTINGS)
+        settings += 0 if found[-1] else count
+    return found
 
 
 def crowded_notes(sections: list[Section]) -> list[str]:
     """What is said of sections that have too much for charts."""
-    count = sum(map(_is_crowded, sections))
+    count = sum(_crowded(sections))
     whose = "a section" if count == 1 else f"{count} sections"
-    return [f"No charts of {whose} with more than {MOST_METHODS} methods or {MOST_CELLS} cells."] if count else []
+    return [f"No charts of {whose}: a section may have {MOST_METHODS} methods and {MOST_CELLS} cells, and all "
+            f"sections with charts {MOST_SETTINGS} settings."] if count else []
 
 
 def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> list[list[Task]]:
@@ -120,9 +129,9 @@ def tasks_of(sections: list[Section], metric: str, asked: tuple[Curve, ...]) -> 
     then the second ones."""
     kinds = kinds_with(asked)
     found = []
-    for number, section in enumerate(sections, 1):
+    for number, (section, crowded) in enumerate(zip(sections, _crowded(sections)), 1):
         own = []
-        if (section.table["status"] == "ok").any() and not _is_crowded(section):
+        if (section.table["status"] == "ok").any() and not crowded:
             for name, kind in kinds.items():
                 count = kind.pages(section, metric)
                 own += [Task(section, number, name, kind, page, count) for page in range(count)]

@@ -45,10 +45,9 @@ CAPTION = ("Frame times: medians with their 95% intervals, a band for each scene
 def paginate(section: Section) -> list[list[tuple[str, pandas.DataFrame]]]:
     """The settings of a section in charts of about equal height; a setting that is too long for one
     is taken apart."""
-    parts = [(name, part) for name, cells in section.settings()
-             for part in _parts(cells, _room(section))]
-    total = sum(_height(name, cells) for name, cells in parts)
     room = _room(section)
+    parts = [(name, part) for name, cells in section.settings() for part in _parts(cells, room)]
+    total = sum(_height(name, cells) for name, cells in parts)
     target = total / math.ceil(total / room)
     pages: list[list] = [[]]
     height = 0.0

@@ -77,22 +77,20 @@ def with_shared(table: pandas.DataFrame) -> tuple[pandas.DataFrame, list[str]]:
 
 def _stage_cells(section: Section) -> list[tuple[str, pandas.DataFrame]]:
     columns = stage_columns(section.table)
-    found = [(name, cells[cells[columns].notna().any(axis=1)]) for name, cells in section.settings()]
-    return _named(found) if columns else []
+    return _named(section.table[section.table[columns].notna().any(axis=1)]) if columns else []
 
 
 def _memory_cells(section: Section) -> list[tuple[str, pandas.DataFrame]]:
     """Variants that take the same memory once."""
     columns = buffer_columns(section.table)
-    found = [(name, cells[cells["status"] == "ok"].drop_duplicates(["method", *columns]))
-             for name, cells in section.settings()]
-    return _named(found) if columns else []
+    measured = section.table[section.table["status"] == "ok"]
+    return _named(measured.drop_duplicates(["setting", "method", *columns])) if columns else []
 
 
-def _named(settings: list[tuple[str, pandas.DataFrame]]) -> list[tuple[str, pandas.DataFrame]]:
-    """The settings that have cells, with the `name` of each cell in the chart."""
-    names, _ = short_labels(pandas.concat([cells for _, cells in settings]))
-    return [(setting, cells.assign(name=cells["label"].map(names))) for setting, cells in settings if len(cells)]
+def _named(table: pandas.DataFrame) -> list[tuple[str, pandas.DataFrame]]:
+    """The cells of each setting, with the `name` of each cell in the chart."""
+    names, _ = short_labels(table)
+    return list(table.assign(name=table["label"].map(names)).groupby("setting", sort=False))
 
 
 def _note(settings: list[tuple[str, pandas.DataFrame]]) -> str:

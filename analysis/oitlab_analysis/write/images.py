@@ -15,7 +15,6 @@ from urllib.parse import quote
 
 from PIL import Image
 
-from ..compare.labels import records
 from ..compare.sections import Section
 
 WIDEST = 1280  # pixels
@@ -106,8 +105,8 @@ class Pictures:
         """Key of a cell and its file -> key of its picture: first one cell of each setting, then another, and so on."""
         queue = []
         for section in sections:
-            for _, cells in section.settings():
-                rows = [row for row in records(cells) if isinstance(row["image"], str)]
+            for cells in section.rows.values():
+                rows = [row for row in cells if isinstance(row["image"], str)]
                 # The reference is what the others are compared with.
                 rows.sort(key=lambda row: row["method"] != "reference")
                 queue += [(place, row) for place, row in enumerate(rows)]

@@ -40,13 +40,12 @@ def _clock(section: Section) -> list[str]:
 
 def _images(report: Report, section: Section) -> list[str]:
     lines = []
-    for _, cells in section.settings():
-        in_folder = cells["key"].map(lambda key: report.sources[key].is_dir()).astype(bool)
-        pictured = cells[cells["image"].notna() & in_folder]
-        if pictured.empty:
+    for cells in section.rows.values():
+        pictured = [row for row in cells if isinstance(row["image"], str) and report.sources[row["key"]].is_dir()]
+        if not pictured:
             continue
         lines += [f"### {markdown_text(setting_heading(cells))}", ""]
-        for row in records(pictured):
+        for row in pictured:
             caption = markdown_text(f"{row['label']}: {error_caption(row)}")
             link = relative_link(report.folder, report.sources[row["key"]], row["image"])
             lines += [f"![{caption}]({link})", "", caption, ""]

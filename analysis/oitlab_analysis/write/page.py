@@ -181,9 +181,9 @@ def _chart(folder: Path, chart: Chart) -> dict[str, str]:
 def _settings(section: Section, pictures: images.Pictures) -> list[dict]:
     """What the viewer offers: the pictures of each setting, by the labels of the table."""
     result = []
-    for name, cells in section.settings():
-        measured = cells[cells["status"] == "ok"]
-        if measured.empty:
+    for name, cells in section.rows.items():
+        measured = [row for row in cells if row["status"] == "ok"]
+        if not measured:
             continue
         result.append({
             "name": name,
@@ -196,7 +196,7 @@ def _settings(section: Section, pictures: images.Pictures) -> list[dict]:
                     "error": error_caption(row),
                     "exact": row.get("quality.rmse") == 0,
                 } | pictures.of(row)
-                for row in records(measured)
+                for row in measured
             ],
         })
     return result

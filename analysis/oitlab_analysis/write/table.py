@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import textwrap
 
-import pandas
-
 from .. import formats
 from ..compare.device_notes import NOTED, note_of
 from ..compare.fragment_source import HARDWARE
 from ..compare.labels import records
-from ..compare.sections import Section, baselines_of, has_hardware_ratio
+from ..compare.sections import Section, has_hardware_ratio
 from ..formats import NOTHING
 
 UNSETTLED = ("time_limit", "max_blocks")
@@ -89,9 +87,9 @@ def terminal_table(section: Section) -> str:
     beside = has_hardware_ratio(section.table)
     columns = COLUMNS_WITH_HARDWARE if beside else TERMINAL_COLUMNS
     head = "  ".join(_align(text, width, right) for text, _, width, right in columns)
-    for _, cells in section.settings():
+    for cells in section.rows.values():
         lines += ["", *textwrap.wrap(setting_heading(cells) + _ratio_text(cells), TERMINAL_WIDTH), head.rstrip()]
-        for row in records(cells):
+        for row in cells:
             lines += _terminal_rows(row, columns)
     return "\n".join(lines)
 
@@ -112,22 +110,23 @@ def terminal_warnings(warnings: list[str], everything: bool = True, hint: str = 
         + f" {hint}\n"
 
 
-def setting_heading(cells: pandas.DataFrame) -> str:
+def setting_heading(cells: list[dict]) -> str:
     """`boxes · default · 640×360 · 12.0 K triangles`."""
-    first = cells.iloc[0]
-    parts = [first["scene_label"], first["view"], first["size_label"]]
-    triangles = cells["triangles"].max()  # failed cells may not know it
-    if formats.is_number(triangles):
-        parts.append(f"{formats.count(triangles)} triangles")
+    parts = [cells[0]["scene_label"], cells[0]["view"], cells[0]["size_label"]]
+    # Failed cells may not know it.
+    triangles = [row["triangles"] for row in cells if formats.is_number(row["triangles"])]
+    if triangles:
+        parts.append(f"{formats.count(max(triangles))} triangles")
     return " · ".join(parts)
 
 
-def _ratio_text(cells: pandas.DataFrame) -> str:
+def _ratio_text(cells: list[dict]) -> str:
     """What the ratios of a setting are to, for its heading; "" where there are none."""
-    if not cells["baseline_name"].notna().any():
+    baselines = sorted({row["baseline_name"] for row in cells if isinstance(row["baseline_name"], str)})
+    if not baselines:
         return ""
-    beside = ", beside it to blend source=hardware" if has_hardware_ratio(cells) else ""
-    return f" · ratio to {baselines_of(cells)}{beside}"
+    beside = any(formats.is_number(row.get("ratio_hardware")) for row in cells)
+    return f" · ratio to {' or '.join(baselines)}" + (", beside it to blend source=hardware" if beside else "")
 
 
 def _terminal_rows(row: dict, columns: Columns) -> list[str]:

@@ -42,9 +42,19 @@ def test_a_section_of_too_many_methods_has_no_charts_and_says_so(tmp_path):
         write_cell(tmp_path, make_cell(method=f"m{number}", blocks=7, frames=1), image=False)
     sections = sections_of(tmp_path)
     assert charts.tasks_of(sections, "rmse", ()) == [[]]
-    assert charts.crowded_notes(sections) == ["No charts of a section with more than 100 methods or 3000 cells."]
+    assert charts.crowded_notes(sections) == [
+        "No charts of a section: a section may have 100 methods and 3000 cells, and all sections with charts 1000 "
+        "settings."]
     (tmp_path / "cells" / f"{sections[0].table['id'].iloc[0]}.json").unlink()
     assert charts.crowded_notes(sections_of(tmp_path)) == []
+
+
+def test_sections_have_charts_while_all_their_settings_are_few(tmp_path, monkeypatch):
+    monkeypatch.setattr(charts, "MOST_SETTINGS", 5)
+    for experiment, count in (("a", 3), ("b", 4), ("c", 2)):
+        for number in range(count):
+            write_cell(tmp_path, make_cell(f"s{number}", experiment=experiment, blocks=7, frames=1), image=False)
+    assert [bool(own) for own in charts.tasks_of(sections_of(tmp_path), "rmse", ())] == [True, False, True]
 
 
 def test_figures_of_a_paper_are_drawn_for_its_experiment_only(tmp_path):
