@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfVersion.h>
 
 #include "image/codec.h"
+#include "image/exr_header.h"
 #include "util/error.h"
 #include "util/suggest.h"
 
@@ -123,6 +124,7 @@ Image readPixels(Imf::InputFile& file, const std::string& name) {
 Image decodeExr(std::string_view bytes, const std::string& name) {
   if (bytes.size() < 4 || !Imf::isImfMagic(bytes.data()))
     fail<InputError>("{}: not an OpenEXR file (it does not begin with the EXR signature)", name);
+  checkExrHeader(bytes, name);
   try {
     MemoryInput stream(bytes, std::filesystem::path(name).filename().string());
     Imf::InputFile file(stream);

@@ -231,6 +231,13 @@ TEST_F(ImageFile, AbsurdSizesAreRefusedBeforeTheyAreAllocated) {
   writeText(folder_ / "wide.exr", bytes);
   EXPECT_THAT(readFailure(folder_ / "wide.exr"), HasSubstr("image of 65537 x 1 pixels"));
 
+  bytes = readTextFile(folder_ / "a.exr");
+  const std::size_t size = bytes.find("channels") + std::string_view("channels0chlist0").size();
+  bytes[size + 3] = 0x7F;  // its highest byte
+  writeText(folder_ / "long.exr", bytes);
+  EXPECT_THAT(readFailure(folder_ / "long.exr"),
+              HasSubstr("bad EXR: an attribute of 2130706505 bytes, and the file ends after"));
+
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(folder_ / "none.png", Image{}); }),
               HasSubstr("none.png: image of 0 x 0 pixels"));
 }

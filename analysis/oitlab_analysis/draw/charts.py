@@ -27,7 +27,7 @@ FEW_CHARTS = 4
 # Of a section with charts: nobody can tell more apart, and laying them out takes time that grows with the
 # square of their number.
 MOST_METHODS, MOST_CELLS = 100, 3000
-MOST_SETTINGS = 1000  # of all sections with charts: each takes some ms for each chart
+MOST_SETTINGS = 500  # of all sections with charts: each takes some ms for each chart
 
 
 @dataclass(frozen=True)

@@ -46,15 +46,20 @@ def _against(changes: list[Change]) -> str:
     return f"against blend: {' or '.join(f'blend source={source}' for source in sources)}" if sources else ""
 
 
+def _by_device(changes: list[Change]) -> dict[str, list[Change]]:
+    found: dict[str, list[Change]] = {}
+    for change in changes:
+        found.setdefault(change.cell["device"]["name"], []).append(change)
+    return found
+
+
 def terminal(result: Diff, details: bool = False) -> str:
     """Blocks of at most 100 characters a line: what changed first. `details` names the shaders."""
-    lines = []
-    for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
-        lines += filter(None, [device, _against(result.changes)])
+    lines, against = [], _against(result.changes)
+    for device, changes in _by_device(result.changes).items():
+        lines += filter(None, [device, against])
         lines.append(f"{HEAD[1]:>23}  {HEAD[2]:<9}  {HEAD[3]:>23}  {HEAD[4]:<9}")
-        for change in result.changes:
-            if change.cell["device"]["name"] != device:
-                continue
+        for change in changes:
             name, ratio, word, relative, relative_word, notes = _row(change)
             lines += textwrap.wrap(name, TERMINAL_WIDTH, subsequent_indent="  ")
             lines.append(f"{ratio:>23}  {word:<9}  {relative:>23}  {relative_word:<9}".rstrip())
@@ -75,10 +80,10 @@ def markdown(result: Diff, folders: tuple[Path, Path]) -> str:
     if against := _against(result.changes):
         lines += [markdown_text(against), ""]
     lines += [f"> **Warning.** {markdown_text(w)}\n" for w in result.warnings]
-    for device in dict.fromkeys(change.cell["device"]["name"] for change in result.changes):
+    for device, changes in _by_device(result.changes).items():
         lines += [f"## {markdown_text(device)}", "", f"| {' | '.join(HEAD)} |",
                   "|---|---:|---|---:|---|---|"]
         lines += [f"| {' | '.join(markdown_text(text) for text in _row(change))} |"
-                  for change in result.changes if change.cell["device"]["name"] == device]
+                  for change in changes]
         lines.append("")
     return "\n".join(lines)

@@ -43,7 +43,7 @@ def test_a_section_of_too_many_methods_has_no_charts_and_says_so(tmp_path):
     sections = sections_of(tmp_path)
     assert charts.tasks_of(sections, "rmse", ()) == [[]]
     assert charts.crowded_notes(sections) == [
-        "No charts of a section: a section may have 100 methods and 3000 cells, and all sections with charts 1000 "
+        "No charts of a section: a section may have 100 methods and 3000 cells, and all sections with charts 500 "
         "settings."]
     (tmp_path / "cells" / f"{sections[0].table['id'].iloc[0]}.json").unlink()
     assert charts.crowded_notes(sections_of(tmp_path)) == []

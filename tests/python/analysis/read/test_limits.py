@@ -14,6 +14,7 @@ from oitlab_analysis.paper.measured import MOST_CONTEXTS, MOST_DEVICES, gather
 from oitlab_analysis.read import limits
 from oitlab_analysis.read.cells import collect
 from oitlab_analysis.read.sources import BadResults
+from oitlab_analysis.write.diff_text import terminal
 from oitlab_analysis.write.report import make_report
 from sections import sections_of
 from synthetic import make_cell, without_measurement, write_cell
@@ -133,3 +134,25 @@ def test_thousands_of_measured_cells_in_one_setting_take_seconds(tmp_path):
     diff(path, path)
     gather([path])
     assert time.process_time() - start < 30
+
+
+def scene_of_its_own(cell, i):
+    cell["scene"]["name"] = cell["group"] = f"s{i}"
+
+
+@pytest.mark.parametrize("change, written", [
+    (scene_of_its_own, True),
+    (lambda cell, i: cell.update(view=f"v{i}"), True),
+    # Without files: each of 18 sections has a chart, which takes a second.
+    (lambda cell, i: cell["device"].update(name=f"d{i}"), False),
+    (lambda cell, i: cell["provenance"].update(commit=f"c{i}"), False),
+], ids=["scenes", "views", "devices", "commits"])
+def test_many_settings_and_sections_take_seconds(tmp_path, change, written):
+    """One method in 1500 scenes or views took a minute, with the square of their number; now 5 s. 10,000
+    take 20 s."""
+    path = pack_of(tmp_path, variants(1500, change, make_cell(blocks=8, frames=1)))
+    start = time.process_time()
+    make_report([path], tmp_path / "report" if written else None)
+    terminal(diff(path, path))
+    gather([path])
+    assert time.process_time() - start < 15
