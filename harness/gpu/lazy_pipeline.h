@@ -15,6 +15,9 @@ class LazyPipeline {
   LazyPipeline() = default;
   explicit LazyPipeline(std::function<Pipeline()> make) : make_(std::move(make)) {}
 
+  /// Whether there is one to make.
+  explicit operator bool() const { return bool(make_); }
+
   /// Throws DeviceError when the driver refuses it.
   const Pipeline& operator*() const {
     if (!pipeline_) pipeline_ = make_();

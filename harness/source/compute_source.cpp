@@ -76,7 +76,8 @@ void ComputeSource::makeOrderPrograms() {
       return Pipeline::compute(device, "source/order.comp", defines, {}, lanes);
     });
   };
-  orderShort_ = order("0", "SHORT_LIST", teamsOf(device_));
+  if (ORDERED_IN_PASSING(lanes) < SHORT_LIST)
+    orderShort_ = order("0", "SHORT_LIST", teamsOf(device_));
   orderMedium_ = order("1", "MEDIUM_LIST", 1);
   orderLong_ = order("2", "SORTED_RUN", 1);
   merge_ = LazyPipeline([&device = device_, common] {
@@ -107,7 +108,7 @@ Pipeline ComputeSource::makePipeline(const FragmentProgram& program) const {
 
 void ComputeSource::makeAllPrograms() {
   for (const LazyPipeline* program : {&orderShort_, &orderMedium_, &orderLong_, &merge_})
-    if (isOrdered()) **program;
+    if (*program) **program;
 }
 
 FragmentPass ComputeSource::make(const FragmentProgram& program) {
@@ -125,7 +126,11 @@ std::uint64_t ComputeSource::begin(const Frame& frame, const Submission& submiss
   }
   runsDone_ = 0;
   lists_.record(frame);
-  if (isOrdered()) frame.stage("order", [&] { recordOrder(frame, submission); });
+  const Buffer* sequence = submission.sequence != nullptr ? submission.sequence : &sequence_;
+  const OrderRule rule{
+      .sequence = sequence->address(), .seed = options_.seed, .longest = longestOrdered()};
+  if (isOrdered() && (orderShort_ || mediumSeen_ || longSeen_))
+    frame.stage("order", [&] { recordOrder(frame, rule); });
   constants_.mapped<SourceConstants>()[0] = {.frame = frame.values,
                                              .mesh = lists_.mesh(frame),
                                              .list = lists_.list().address(),
@@ -133,24 +138,29 @@ std::uint64_t ComputeSource::begin(const Frame& frame, const Submission& submiss
                                              .blocks = lists_.blocks().address(),
                                              .medium = lists_.medium().address(),
                                              .counters = lists_.counters().address(),
+                                             .rule = rule,
                                              .halfBlocks = lists_.halfBlocks(),
                                              .counting = frame.instrumented};
   return constants_.address();
 }
 
-void ComputeSource::recordOrder(const Frame& frame, const Submission& submission) {
-  const Buffer* sequence = submission.sequence != nullptr ? submission.sequence : &sequence_;
+std::uint32_t ComputeSource::longestOrdered() const {
+  if (longSeen_) return ~0u;
+  const std::uint32_t before = mediumSeen_ ? MEDIUM_LIST : SHORT_LIST;
+  return std::max(before, ORDERED_IN_PASSING(device_.info().subgroupSize));
+}
+
+void ComputeSource::recordOrder(const Frame& frame, const OrderRule& rule) {
   OrderPush push{.mesh = lists_.mesh(frame),
                  .list = lists_.list().address(),
                  .keys = lists_.keys().address(),
                  .blocks = lists_.blocks().address(),
                  .medium = lists_.medium().address(),
                  .counters = lists_.counters().address(),
-                 .sequence = sequence->address(),
+                 .rule = rule,
                  .from = runs_[0].address(),
                  .to = runs_[1].address(),
                  .halfBlocks = lists_.halfBlocks(),
-                 .seed = options_.seed,
                  .run = merges_ > 0 ? SORTED_RUN : 0u,
                  .last = 0};
   const vk::Buffer counters = lists_.counters().vk();
@@ -161,7 +171,7 @@ void ComputeSource::recordOrder(const Frame& frame, const Submission& submission
   // They need no barrier between them: they work on different lists.
   if (longSeen_) run(orderLong_, offsetof(SourceCounters, lists.runGroups));
   if (mediumSeen_) run(orderMedium_, offsetof(SourceCounters, lists.mediumGroups));
-  run(orderShort_, offsetof(SourceCounters, lists.shortGroups));
+  if (orderShort_) run(orderShort_, offsetof(SourceCounters, lists.shortGroups));
   if (longSeen_ && merges_ > 0) mergeLongLists(frame, push);
   frame.barrier(Stage::eComputeShader, Stage::eComputeShader);
 }

@@ -46,7 +46,9 @@ class ComputeSource : public FragmentSource {
                 std::span<const std::byte> push, const FragmentRun& run) override;
   Pipeline makePipeline(const FragmentProgram& program) const;
   void makeOrderPrograms();
-  void recordOrder(const Frame& frame, const Submission& submission);
+  void recordOrder(const Frame& frame, const OrderRule& rule);
+  /// Lists of up to so many tri-half-blocks are put in order in this frame.
+  std::uint32_t longestOrdered() const;
   void mergeLongLists(const Frame& frame, OrderPush push);
   bool makeRoomForLongLists(std::uint32_t longest);
   bool isOrdered() const { return options_.deliver != DELIVER_ANY; }

@@ -48,7 +48,7 @@ class Wboit : public OnePassMethod {
   WboitPush pushFor(const Frame& frame) const {
     const auto [nearest, farthest] = depthRange(frame.camera, frame.scene.scene().bounds);
     const float scale = depthScale_ > 0.0 ? float(depthScale_) : paperRange_ / farthest;
-    return {frame.constants, scale, nearest, farthest};
+    return {frame.constants, 1.0f / scale, nearest, farthest};
   }
 
   double depthScale_;

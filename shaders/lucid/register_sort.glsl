@@ -1,6 +1,6 @@
 // A half-block's list sorted in registers, SORT_KEYS keys per lane. The includer defines SORT_KEYS before each include
 // (1, 2, 4, 8 or 16, as a plain number), and declares a `push` that has keys.
-#include "lucid/networks.glsl"
+#include "raster/blocks/networks.glsl"
 #include "lucid/pack_key.glsl"
 #include "raster/fragments/team.glsl"
 

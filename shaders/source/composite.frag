@@ -16,7 +16,7 @@ bool shadeFragment(Fragment f, out vec4 color) {
   color = vec4(0.0);
   return false;
 }
-float viewDistance(Fragment f) { return 0.0; }
+float inverseDistance(Fragment f) { return 0.0; }
 bool hasCutoff(Fragment f) { return false; }
 
 layout(location = 0) out vec4 outColor;  // premultiplied

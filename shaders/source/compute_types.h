@@ -16,6 +16,17 @@ using namespace oitlab::raster;
 #define DELIVER_FAR_TO_NEAR 3
 #define DELIVER_SHUFFLED 4     // a random order for each seed, the same in every frame
 
+// Lists of up to two tri-half-blocks per lane are put in order while they are delivered (order_in_passing.glsl), longer
+// ones before (order.comp).
+#define ORDERED_IN_PASSING(lanes) (2u * (lanes))
+
+// What an order depends on beside the triangles.
+struct OrderRule {
+  ADDRESS_OF(WordBuffer) sequence;  // by primitive id: its place in the order of submission; null: the ids are
+  uint seed;                        // of DELIVER_SHUFFLED
+  uint longest;  // longer lists are not in order yet, since no frame before had one; this frame is repeated
+};
+
 // Counted after BlockCounters.
 struct SourceCounters {
   BlockCounters lists;  // must be first
@@ -37,6 +48,7 @@ struct SourceConstants {
   ADDRESS_OF(HalfBlockBuffer) blocks;  // as BlocksPush
   ADDRESS_OF(PixelJobBuffer) medium;
   ADDRESS_OF(SourceCounterBuffer) counters;
+  OrderRule rule;
   uint halfBlocks;
   uint counting;  // 1 in instrumented frames
 };
@@ -53,11 +65,10 @@ struct OrderPush {
   ADDRESS_OF(HalfBlockBuffer) blocks;
   ADDRESS_OF(PixelJobBuffer) medium;
   ADDRESS_OF(SourceCounterBuffer) counters;
-  ADDRESS_OF(WordBuffer) sequence;     // by primitive id: its place in the order of submission; null: the ids are
+  OrderRule rule;
   ADDRESS_OF(OrderPairBuffer) from;    // runs of long lists, parallel to `list`: key, place
   ADDRESS_OF(OrderPairBuffer) to;
   uint halfBlocks;
-  uint seed;
   uint run;   // length of the sorted runs that a merge begins with; 0: no list has more than one
   uint last;  // 1: this merge is the last
 };

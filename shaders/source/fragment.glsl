@@ -34,8 +34,8 @@ struct Fragment {
 // the color is needed.
 bool shadeFragment(Fragment f, out vec4 color);
 
-// The distance from the eye plane, in scene units: near / depth, but for rounding.
-float viewDistance(Fragment f);
+// 1 / distance from the eye plane, in scene units: depth / near, but for rounding.
+float inverseDistance(Fragment f);
 
 // Whether shadeFragment() can return false.
 bool hasCutoff(Fragment f);

@@ -24,7 +24,7 @@ bool shadeFragment(Fragment f, out vec4 color) {
   return shade(push.frame.c.materials.at[f.source.material], f.source.surface, color);
 }
 
-float viewDistance(Fragment f) { return 1.0 / f.source.invW; }
+float inverseDistance(Fragment f) { return f.source.invW; }
 
 bool hasCutoff(Fragment f) { return push.frame.c.materials.at[f.source.material].alphaCutoff > 0.0; }
 

@@ -6,7 +6,7 @@
 layout(local_size_x = MERGE_GROUP) in;
 layout(push_constant, scalar) uniform Push { OrderPush push; };
 
-#include "source/order.glsl"
+#include "source/order_pass.glsl"
 
 bool isInFront(uvec2 a, uvec2 b) { return a.x != b.x ? a.x > b.x : idOfKey(a) < idOfKey(b); }
 

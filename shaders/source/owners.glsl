@@ -42,23 +42,30 @@ struct Owner {
 };
 
 #if ON_TARGET
-// As the blending unit of a GPU rounds, which stores every result.
-vec4 rounded(vec4 color) {
+// A program on the target blends as the unit of a GPU, which stores every result in the target's format. If that has 8
+// bits, sums are in units of 1 / 255.
+#define TARGET_UNITS (TARGET_BITS == 8 ? 255.0 : 1.0)
+
+vec4 blended(vec4 sum, vec4 c) {
 #if TARGET_BITS == 8
-  return round(clamp(color, 0.0, 1.0) * 255.0) / 255.0;
+  c = min(c, 1.0);
+#endif
+  precise const vec4 result = fma(vec4(1.0 - c.a), sum, c * (c.a * TARGET_UNITS));
+#if TARGET_BITS == 8
+  // Adding 2^23 rounds to a whole number. round() is an operation of a GPU's slow units.
+  precise const vec4 shifted = result + 8388608.0;
+  precise const vec4 whole = shifted - 8388608.0;
+  return whole;
 #elif TARGET_BITS == 16
-  return vec4(unpackHalf2x16(packHalf2x16(color.rg)), unpackHalf2x16(packHalf2x16(color.ba)));
+  return vec4(unpackHalf2x16(packHalf2x16(result.rg)), unpackHalf2x16(packHalf2x16(result.ba)));
 #else
-  return color;
+  return result;
 #endif
 }
 #endif
 
 vec4 combined(int operation, vec4 sum, vec4 c) {
-  precise vec4 result;
-  if (operation == COMBINE_ADD) result = sum + c;
-  else if (operation == COMBINE_ATTENUATE) result = sum * (1.0 - c);
-  else result = c.a * c + (1.0 - c.a) * sum;
+  precise const vec4 result = operation == COMBINE_ADD ? sum + c : sum * (1.0 - c);
   return result;
 }
 
@@ -69,7 +76,10 @@ void open(out Owner owner, ivec2 place) {
   owner.taken = 0u;
   owner.sums = initialSums;
 #if ON_TARGET
-  owner.sums[0] = imageLoad(target, min(place, ivec2(push.frame.c.size) - 1));
+  owner.sums[0] = imageLoad(target, min(place, ivec2(push.frame.c.size) - 1)) * TARGET_UNITS;
+#if TARGET_BITS == 8
+  owner.sums[0] = round(owner.sums[0]);
+#endif
 #endif
 }
 
@@ -89,10 +99,11 @@ Contributed contributed(Fragment f, bool exists) {
 void combine(inout Owner owner, Contributed with) {
   if (!with.counts) return;
   ++owner.taken;
+#if ON_TARGET
+  owner.sums[0] = blended(owner.sums[0], with.c[0]);
+#else
   [[unroll]] for (int i = 0; i < CONTRIBUTIONS; ++i)
     owner.sums[i] = combined(operations[i], owner.sums[i], with.c[i]);
-#if ON_TARGET
-  owner.sums[0] = rounded(owner.sums[0]);
 #endif
 }
 
@@ -100,7 +111,7 @@ void take(inout Owner owner, Fragment f) { combine(owner, contributed(f, true));
 
 void close(Owner owner, ivec2 place) {
 #if ON_TARGET
-  imageStore(target, place, owner.sums[0]);
+  imageStore(target, place, owner.sums[0] / TARGET_UNITS);
 #else
   vec4 color;
   if (composite(owner.sums, color)) store(place, color);

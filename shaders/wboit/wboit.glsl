@@ -9,11 +9,10 @@ layout(push_constant, scalar) uniform PushBlock { WboitPush push; };
 bool contribute(Fragment f, out vec4 c[2]) {
   vec4 color;
   if (!shadeFragment(f, color)) return false;
-  const float z = viewDistance(f);
-  const float range = max(push.farthest - push.nearest, 1e-20);
+  const float overZ = inverseDistance(f), range = max(push.farthest - push.nearest, 1e-20);
   // As the depth buffer of a projection onto [nearest, farthest] has it (the paper's d(z)).
-  const float d = clamp(push.farthest * (z - push.nearest) / (z * range), 0.0, 1.0);
-  const float w = weight(z * push.depthScale, d, color.a);
+  const float d = clamp(push.farthest * (1.0 - push.nearest * overZ) / range, 0.0, 1.0);
+  const float w = weight(overZ * push.overDepthScale, d, color.a);
   c[0] = vec4(color.rgb * color.a, color.a) * w;
   c[1] = vec4(color.a);
   return true;

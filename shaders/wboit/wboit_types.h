@@ -10,7 +10,7 @@ namespace oitlab::wboit {
 
 struct WboitPush {
   ADDRESS_OF(FrameBuffer) frame;
-  float depthScale;  // scene units to those of the paper's constants
+  float overDepthScale;  // 1 / scene units to 1 / those of the paper's constants
   float nearest;     // scene units, > 0: depth range of the scene, for equation 10
   float farthest;
 };

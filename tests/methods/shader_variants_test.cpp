@@ -1,6 +1,7 @@
 // Every variant of every shader compiles, and the driver makes a pipeline of it. Nothing is drawn
 // with them, which is where a CPU device spends its time; .ci/run does this before the long tests.
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -76,6 +77,32 @@ class ShaderVariants : public GpuTest {
   int made_ = 0;
 };
 
+/// A variant's path and definitions, from its label.
+std::pair<std::string, Defines> variantOf(const std::string& label) {
+  std::istringstream words(label);
+  std::string path, word;
+  words >> path;
+  Defines defines;
+  while (words >> word) {
+    const std::size_t equals = word.find('=');
+    defines[word.substr(0, equals)] = word.substr(equals + 1);
+  }
+  return {path, defines};
+}
+
+/// Code for other subgroup sizes than this device's also compiles.
+void compileForWideSubgroups(ShaderLibrary& shaders) {
+  for (const auto& [label, hash] : ShaderLibrary::Hashes(shaders.hashes())) {
+    auto [path, defines] = variantOf(label);
+    if (!defines.contains("SUBGROUP_SIZE")) continue;
+    for (const char* lanes : {"32u", "64u"}) {
+      defines["SUBGROUP_SIZE"] = lanes;
+      defines["SMALL_SUBGROUP"] = "0";
+      EXPECT_NO_THROW(shaders.compile(path, defines)) << label << ", subgroups of " << lanes;
+    }
+  }
+}
+
 TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
   allowRefusals();  // of large local arrays
   // Colours of triangles, textures, and opaque surfaces: what lucid has separate code for.
@@ -119,6 +146,7 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
   fixtures.back()->render("blend");
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());
   EXPECT_GT(made_, variants * 3 / 4) << "most combinations are allowed";
+  compileForWideSubgroups(device.shaders());
 
   std::set<std::string> compiled;
   for (const auto& [label, hash] : device.shaders().hashes())

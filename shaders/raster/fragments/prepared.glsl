@@ -12,7 +12,10 @@
 // Triangles per team: an even number, since they are shaded in pairs, with room for two words for each of 32 lanes
 // (sampleWord). The number is small because shared memory limits how many subgroups run at the same time: an NVIDIA
 // H200 gives it 48 KB per multiprocessor (docs/performance.md).
-#define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : 22u)
+#ifndef PREPARED_FLAT
+#define PREPARED_FLAT 22u
+#endif
+#define PREPARED_COUNT (HAS_MORE ? 8u : INTERPOLATES ? 10u : PREPARED_FLAT)
 shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
 void storePrepared(uint at, Prepared p) {

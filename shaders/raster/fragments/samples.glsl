@@ -3,10 +3,8 @@
 #ifndef OITLAB_RASTER_SAMPLES_GLSL
 #define OITLAB_RASTER_SAMPLES_GLSL
 
+#include "raster/fragments/bits.glsl"
 #include "raster/fragments/team.glsl"
-
-// Lanes that take samples, and pixels that a team processes at the same time.
-#define OWNERS min(SUBGROUP_SIZE, 32u)
 
 // The triangles of a batch that have samples: slot and mask, and the number of samples before each.
 shared uvec2 batch[TEAMS * SUBGROUP_SIZE];
@@ -39,18 +37,6 @@ Batch makeBatch(uint slot, uint mask) {
     samplesBefore[b.place] = end - count;
   }
   return b;
-}
-
-uint nthBit(uint mask, uint n) {
-  uint place = 0u;
-  [[unroll]] for (uint width = 16u; width > 0u; width /= 2u) {
-    const uint below = bitCount(mask & ((1u << width) - 1u));
-    const bool above = n >= below;
-    n -= above ? below : 0u;
-    mask = above ? mask >> width : mask;
-    place += above ? width : 0u;
-  }
-  return place;
 }
 
 // The lane's sample of [first, first + OWNERS): the triangle's slot and the bit of the pixel. All lanes must call

@@ -1,14 +1,17 @@
 // Bitonic networks (Batcher 1968) over registers, written out: indices that compilers do not see as constants
 // would put the keys into memory. `up`: ascending.
-#ifndef OITLAB_LUCID_NETWORKS_GLSL
-#define OITLAB_LUCID_NETWORKS_GLSL
+#ifndef OITLAB_RASTER_NETWORKS_GLSL
+#define OITLAB_RASTER_NETWORKS_GLSL
 
+// The includer may define another, of keys of another type.
+#ifndef EXCHANGE
 #define EXCHANGE(k, i, j, up) \
   { \
     const uint a = k[i], b = k[j]; \
     k[i] = (up) ? min(a, b) : max(a, b); \
     k[j] = (up) ? max(a, b) : min(a, b); \
   }
+#endif
 #define EXCHANGE_2(k, i, j, up) EXCHANGE(k, i, j, up) EXCHANGE(k, i + 1, j + 1, up)
 #define EXCHANGE_4(k, i, j, up) EXCHANGE_2(k, i, j, up) EXCHANGE_2(k, i + 2, j + 2, up)
 #define EXCHANGE_8(k, i, j, up) EXCHANGE_4(k, i, j, up) EXCHANGE_4(k, i + 4, j + 4, up)
