@@ -62,6 +62,7 @@ fs::path findOwnerFile(const fs::path& claim) {
   return {};
 }
 
+/// Nobody's where the file cannot be read.
 Owner readOwner(const fs::path& file) {
   try {
     return Owner::fromJson(readJsonFile(file));
@@ -71,11 +72,12 @@ Owner readOwner(const fs::path& file) {
 }
 
 /// Whether nobody has touched `path` for as long as the lease lasts before `now`. Both are times of
-/// the file system, which may be another machine's.
+/// the file system, which may be another machine's. A time that lies as far in the future is from
+/// before a clock was set back: whoever is alive will touch the file again, by the new clock.
 bool isOld(const fs::path& path, fs::file_time_type now, std::chrono::milliseconds lease) {
   std::error_code gone;
   const auto touched = fs::last_write_time(path, gone);
-  return gone ? false : now - touched > lease;
+  return gone ? false : now - touched > lease || touched - now > lease;
 }
 
 /// What time the file system says it is: that of a file that was written just now.
@@ -136,7 +138,7 @@ std::unique_ptr<GroupClaim> GroupClaim::take(const fs::path& results, const std:
   if (fs::exists(claim, error)) {
     const fs::path ownerFile = findOwnerFile(claim);
     if (!isStale(claim, ownerFile, fileSystemNow(running), terms.lease)) {
-      holder = ownerFile.empty() ? "another process" : readOwner(ownerFile).describe();
+      holder = readOwner(ownerFile).describe();
       return nullptr;
     }
     dropClaim(running, claim, ownerFile);

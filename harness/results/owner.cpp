@@ -77,7 +77,7 @@ Owner Owner::fromJson(const nlohmann::json& json) {
 }
 
 std::string Owner::describe() const {
-  return fmt::format("process {} on {}", process, host);
+  return process > 0 ? fmt::format("process {} on {}", process, host) : "another process";
 }
 
 bool Owner::isDead() const {

@@ -22,7 +22,7 @@ struct Owner {
   /// What is missing stays empty.
   static Owner fromJson(const nlohmann::json& json);
 
-  /// "process 4711 on host".
+  /// "process 4711 on host"; "another process" where that is not known.
   std::string describe() const;
 
   /// Surely at its end: it ran on this machine, and there is no such process now. False where that

@@ -18,10 +18,7 @@ SWEEP = """
 name = "faults"
 sizes = ["24x16"]
 scenes = ["planes", { source = "boxes", detail = 0.05 }]
-methods = ["abuffer", { method = "blend", order = ["submission", "sorted"] }, "cpu_reference",
-           { method = "depth_peeling", mode = ["front_to_back", "dual"] },
-           { method = "local_memory", passes = 2, size = 8 },
-           "lucid", "reference", "wboit"]
+methods = [METHODS]
 [measure]
 time_limit = 60
 min_blocks = 1
@@ -30,15 +27,23 @@ min_frames = 1
 max_frames = 1
 stage_frames = 1
 """
+HARDWARE = """"abuffer", { method = "blend", order = ["submission", "sorted"] }, "cpu_reference",
+    { method = "depth_peeling", mode = ["front_to_back", "dual"] },
+    { method = "local_memory", passes = 2, size = 8 }, "lucid", "reference", "wboit" """
+# Every method that takes fragments of the compute rasterizer as well; what they are compared with as usual.
+COMPUTE = """{ method = "abuffer", source = "compute" },
+    { method = "blend", order = ["submission", "sorted"], source = "compute" },
+    { method = "depth_peeling", mode = ["front_to_back", "dual"], source = "compute" },
+    { method = "reference", source = ["hardware", "compute"] }, { method = "wboit", source = "compute" }"""
 
 
 class Sweep:
     """The small sweep in a folder of its own; each run() goes on where the last one stopped."""
 
-    def __init__(self, program, folder, text=SWEEP):
+    def __init__(self, program, folder, methods=HARDWARE):
         self.program, self.folder = program, folder
         self.experiment, self.results = folder / "faults.toml", folder / "results"
-        self.experiment.write_text(text)
+        self.experiment.write_text(SWEEP.replace("METHODS", methods))
 
     @property
     def command(self):

@@ -5,7 +5,7 @@ import json
 import os
 
 import pytest
-from small_sweep import LAYERS, Sweep, assert_right
+from small_sweep import COMPUTE, HARDWARE, LAYERS, Sweep, assert_right
 
 pytestmark = pytest.mark.skipif(not (LAYERS / "fail_calls.json").is_file(),
                                 reason="the layer fail_calls is not built beside the program")
@@ -30,15 +30,28 @@ def calls_of(folder):
     return counts, ["fault:", "yes"] in lines
 
 
-@pytest.fixture(scope="session")
-def counts(program, tmp_path_factory):
+def count_calls(sweep):
     """Calls of each function in a whole run."""
-    folder = tmp_path_factory.mktemp("counts")
-    done = Sweep(program, folder).run(**layer(folder))
+    done = sweep.run(**layer(sweep.folder))
     assert done.returncode == 0, done.stderr
-    counts, happened = calls_of(folder)
+    counts, happened = calls_of(sweep.folder)
     assert not happened and counts["vkQueueSubmit"] > 100
     return counts
+
+
+@pytest.fixture(scope="session")
+def counts(program, tmp_path_factory):
+    return count_calls(Sweep(program, tmp_path_factory.mktemp("counts")))
+
+
+@pytest.fixture(scope="session")
+def compute(program, tmp_path_factory):
+    """The cells of a run with compute fragments in which nothing fails, and its calls."""
+    whole = Sweep(program, tmp_path_factory.mktemp("compute"), COMPUTE)
+    counts = count_calls(whole)
+    cells = whole.cells()
+    assert len(cells) == 16 and all(cell["status"] == "ok" for cell in cells.values())
+    return cells, counts
 
 
 def check(sweep, expected, function, fault):
@@ -95,6 +108,16 @@ def test_one_call_fails(sweep, undisturbed, counts, function, where, result):
         mend(sweep, undisturbed)
 
 
+@pytest.mark.parametrize(("function", "where", "result"), [
+    ("vkCreateComputePipelines", 0.9, OUT_OF_MEMORY), ("vkQueueSubmit", 0.6, LOST)])
+def test_one_call_fails_with_compute_fragments(program, tmp_path, compute, function, where, result):
+    expected, counts = compute
+    sweep = Sweep(program, tmp_path, COMPUTE)
+    happened, _ = check(sweep, expected, function, f"{function}:{1 + int(where * (counts[function] - 1))}:{result}")
+    assert happened
+    mend(sweep, expected)
+
+
 def test_memory_that_stays_short_fails_what_needs_it(sweep, undisturbed, counts):
     call = counts["vkAllocateMemory"] // 2
     _, failed = check(sweep, undisturbed, "vkAllocateMemory",
@@ -133,9 +156,14 @@ def numbers(count):
         {*range(1, 21), *range(count - 9, count + 1), *range(1, count, max(1, count // 120))})
 
 
-def test_every_call_of_every_function_fails_once(program, tmp_path, undisturbed, counts, long):
+@pytest.mark.parametrize("source", ["hardware", "compute"])
+def test_every_call_of_every_function_fails_once(program, tmp_path, request, source, long):
     if not long:
         pytest.skip("more than a thousand runs of a second each: pytest --long")
+    if source == "compute":
+        methods, (undisturbed, counts) = COMPUTE, request.getfixturevalue("compute")
+    else:
+        methods, undisturbed, counts = HARDWARE, *map(request.getfixturevalue, ("undisturbed", "counts"))
     happened, wrong = 0, []
     for function, count in sorted(counts.items()):
         for result in (OUT_OF_MEMORY, *([LOST] if function in WAITS else [])):
@@ -143,7 +171,7 @@ def test_every_call_of_every_function_fails_once(program, tmp_path, undisturbed,
                 folder = tmp_path / f"{function}-{call}-{result}"
                 folder.mkdir()
                 try:
-                    happened += check(Sweep(program, folder), undisturbed, function,
+                    happened += check(Sweep(program, folder, methods), undisturbed, function,
                                       f"{function}:{call}:{result}")[0]
                 except (AssertionError, json.JSONDecodeError) as error:
                     wrong.append(str(error))

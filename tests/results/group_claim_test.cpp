@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <fstream>
 
 #include <gmock/gmock.h>
 
@@ -128,6 +129,33 @@ TEST_F(Claims, AStaleOneIsTakenOverAndItsOwnerCommitsNothing) {
   writeAll(*next);
   EXPECT_TRUE(next->commit());
   EXPECT_EQ(tokens().count(next->token()), std::size_t(cellCount));
+}
+
+/// The owner file of the only claim.
+fs::path ownerFile(const fs::path& results) {
+  for (const auto& entry : fs::directory_iterator(results / "running" / "key"))
+    if (entry.path().extension() == ".owner") return entry.path();
+  ADD_FAILURE() << "no owner";
+  return {};
+}
+
+TEST_F(Claims, OneFromBeforeTheClockWasSetBackIsTakenOver) {
+  const auto still = take({.lease = 60s, .heartbeat = 60s});
+  const fs::path owner = ownerFile(folder_);
+  fs::last_write_time(owner, fs::last_write_time(owner) + 30s);
+  EXPECT_FALSE(take());  // clocks of machines differ by less than a lease
+  fs::last_write_time(owner, fs::last_write_time(owner) + 1h);
+  EXPECT_TRUE(take());
+  EXPECT_FALSE(still->isHeld());
+}
+
+TEST_F(Claims, AnOwnerThatIsHalfWrittenIsSomebodyUntilTheLeaseEnds) {
+  const auto still = take({.lease = 60s, .heartbeat = 60s});
+  std::ofstream(ownerFile(folder_)) << "{\"token\": \"x";
+  EXPECT_FALSE(take());
+  EXPECT_EQ(holder_, "another process");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(take({.lease = 100ms, .heartbeat = 60s}));
 }
 
 TEST_F(Claims, AHeartbeatKeepsIt) {

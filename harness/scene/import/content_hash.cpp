@@ -27,12 +27,15 @@ std::string hashOf(const std::string& text) {
   return imageHash(std::as_bytes(std::span(text)));
 }
 
-/// What changes with a file's contents, as one word; "none" when there is no regular file.
+/// What changes with a file's contents, as one word; "none" when there is no regular file. The time
+/// of its last change of state is part of it: unlike that of the last write, no program can set it
+/// back (`cp -p`, `rsync -t`).
 std::string stampOf(const fs::path& path) {
   struct stat found {};
   if (path.empty() || ::stat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return "none";
-  return fmt::format("{}:{}:{}:{}.{:09}", found.st_dev, found.st_ino, found.st_size,
-                     found.st_mtim.tv_sec, found.st_mtim.tv_nsec);
+  return fmt::format("{}:{}:{}:{}.{:09}:{}.{:09}", found.st_dev, found.st_ino, found.st_size,
+                     found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_ctim.tv_sec,
+                     found.st_ctim.tv_nsec);
 }
 
 /// Whether the file was written so recently that another write might leave the same time: file
