@@ -28,8 +28,8 @@ bool isTime(const json& value) {
 std::string findDamage(const json& cell, const std::string& id,
                        const std::filesystem::path& results) {
   if (!cell.is_object()) return "it is no JSON object";
-  if (at(cell, "/schema") != 1)
-    return fmt::format("its schema is {}, wanted 1", at(cell, "/schema").dump());
+  if (at(cell, "/schema") != cellSchema)
+    return fmt::format("its schema is {}, wanted {}", at(cell, "/schema").dump(), cellSchema);
   if (at(cell, "/id") != id) return fmt::format("its id is {}", at(cell, "/id").dump());
   for (const char* text : {"/group", "/provenance/commit"})
     if (!isText(at(cell, text))) return fmt::format("it has no {}", text + 1);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "results/cell_check.h"
 #include "results/describe.h"
 
 namespace oitlab {
@@ -50,7 +51,7 @@ json describeCell(const CellSpec& cell, const DeviceInfo& device, const Experime
                   const MeasuredWith& with, const GroupRun& run,
                   const ShaderLibrary::Hashes& shaders) {
   json content = cell.identity();
-  content["schema"] = 1;
+  content["schema"] = cellSchema;
   content["id"] = cellId(cell, device);
   content["experiment"] = experiment.name;
   if (!experiment.overrides.empty()) content["overrides"] = experiment.overrides;

@@ -92,6 +92,13 @@ CellState ResultsFolder::look(const CellSpec& cell) {
   } catch (const InputError& unreadable) {
     damage = unreadable.what();
   }
+  const auto schema = content.is_object() ? content.find("schema") : content.end();
+  if (schema != content.end() && schema->is_number_integer() && *schema > cellSchema)
+    fail<InputError>(
+        "{}: its schema is {}, which a newer version wrote; this one knows {}: measure into "
+        "another "
+        "folder, or with that version",
+        file.string(), schema->dump(), cellSchema);
   if (!damage.empty()) {
     state.kind = CellState::damaged;
     state.reason = fmt::format("{} is no whole cell: {}", file.string(), damage);

@@ -49,7 +49,8 @@ class ResultsFolder {
   /// Makes the folders. Throws OutputError where they cannot be written.
   void make() const;
 
-  /// Reads what is there of the cells of a group.
+  /// Reads what is there of the cells of a group. Throws InputError where a newer version wrote
+  /// one.
   GroupState look(const std::vector<CellSpec>& group);
 
   const std::filesystem::path& path() const { return path_; }

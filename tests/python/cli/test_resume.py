@@ -8,6 +8,18 @@ from program import ROOT
 from runs import EXPERIMENT, baselines, cells, measured
 
 
+def test_cells_of_a_newer_version_are_left_alone(oitlab, toml, results):
+    """They used to be measured again, and so lost."""
+    assert oitlab("run", toml, "--results", results).returncode == 0
+    name, cell = sorted(cells(results).items())[0]
+    newer = json.dumps({**cell, "schema": 2})
+    (results / "cells" / name).write_text(newer)
+    done = oitlab("run", toml, "--results", results)
+    assert done.returncode == 2 and f"{name}: its schema is 2, which a newer version wrote" in done.stderr
+    assert len(done.stderr.splitlines()) <= 2
+    assert (results / "cells" / name).read_text() == newer
+
+
 def test_half_a_group_is_measured_again_as_a_whole(oitlab, toml, results):
     """Two of three methods were measured again alone: their ratios had another baseline."""
     assert oitlab("run", toml, "--results", results).returncode == 0
