@@ -9,7 +9,7 @@ void fragment(Fragment f) {
   if (!shadeFragment(f, color)) return;
   const uint index = atomicAdd(push.counters.c.fragments, 1u);
   if (index >= push.capacity) return;  // counted all the same: the host grows the pool, or says so
-  linkFragment(push.nodes, push.heads, f.index, index, color, f.depth, f.id);
+  storeNode(push.nodes, index, color, f.depth, f.id, atomicExchange(push.heads.at[f.index], index));
 #ifdef COUNTS
   atomicAdd(push.counts.at[f.index], 1u);
 #endif

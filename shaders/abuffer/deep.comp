@@ -2,6 +2,7 @@
 // Pixels that are too deep for the local arrays, still exact: their lists are sorted where they are
 // (common/list_sort.glsl), spread over rounds.
 #include "abuffer/finish.glsl"
+#include "common/list_blend.glsl"
 #include "common/list_sort.glsl"
 
 layout(local_size_x = LIST_GROUP) in;
@@ -15,14 +16,9 @@ void main() {
   uint head = push.heads.at[pixel];
   const uint most = nodesInLists();
   if (sortWithinBudget(push.nodes, most, head, run)) {
-    vec4 accumulated = vec4(0.0);
-    uint count = 0u;
-    for (uint node = head; node < most && count <= most; node = push.nodes.at[node].next) {
-      accumulated = blendUnder(accumulated, unpackColor(push.nodes.at[node].color));
-      ++count;
-    }
+    const BlendedList list = blendList(push.nodes, most, head, 0.0);
     if (head == LIST_END) atomicAdd(push.counters.c.broken, 1u);
-    else finishPixel(pixel, head, accumulated, Tally(count, 0u));
+    else finishPixel(pixel, head, list.accumulated, Tally(list.nodes, 0u));
     run = LIST_END;
   } else if (push.round + 1u == push.rounds) {
     atomicAdd(push.counters.c.unfinished, 1u);

@@ -57,15 +57,10 @@ NODE_COLOR_TYPE packColor(vec4 color) { return color; }
 vec4 unpackColor(NODE_COLOR_TYPE packed) { return packed; }
 #endif
 
-// Puts a fragment in front of the list at `head`, in a node that is the caller's own.
-void linkFragment(NodeBuffer nodes, HeadBuffer heads, uint head, uint index, vec4 color, float depth,
-                  uint id) {
-  Node node;
-  node.color = packColor(color);
-  node.depth = depth;
-  node.id = id;
-  node.next = atomicExchange(heads.at[head], index);
-  nodes.at[index] = node;
+// Stores a fragment in node `index`, which is the caller's own, before the node `next`. A fragment joins a list with
+// next = atomicExchange(head of the list, index).
+void storeNode(NodeBuffer nodes, uint index, vec4 color, float depth, uint id, uint next) {
+  nodes.at[index] = Node(packColor(color), depth, id, next);
 }
 #endif
 

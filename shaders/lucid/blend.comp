@@ -128,7 +128,7 @@ uint sweep(HalfBlock block, ivec2 corner, uint owned) {
           Sample f;
           const float invW = invWOf(t, hitPixel);
           f.depth = depthOf(push.frame, invW);
-          f.id = idOf(t);
+          f.id = t.id;
           const bool known = (full & (1u << hit.y)) != 0u;
           if (known || shadePrepared(push.frame, t, hitPixel, invW, f.color)) {
             storeSample(lane, f);

@@ -28,12 +28,8 @@ void capture(uint number) {
     if (index >= push.nodeCapacity) continue;
     vec4 color;
     const bool kept = shadePrepared(push.frame, t, pixel, invW, color);
-    Node node;
-    node.color = kept ? color : vec4(-1.0);  // cut out: counted, not blended
-    node.depth = depth;
-    node.id = idOfTriangle(push.mesh, item.triangle);
-    node.next = atomicExchange(push.deepPixels.at[number].head, index);
-    push.nodes.at[index] = node;
+    if (!kept) color = vec4(-1.0);  // cut out: counted, not blended
+    storeNode(push.nodes, index, color, depth, t.id, atomicExchange(push.deepPixels.at[number].head, index));
   }
 }
 

@@ -1,6 +1,7 @@
 #version 460
 // Sorts and blends the lists of deep pixels, one invocation per pixel, in as many rounds as needed.
 #include "common/bindings.glsl"
+#include "common/list_blend.glsl"
 #include "common/list_sort.glsl"
 #include "lucid/lucid_types.h"
 #include "raster/blocks/half_block.glsl"
@@ -17,22 +18,13 @@ void main() {
   if (deep.done != 0u) return;
   const uint most = push.counters.c.deepCaptured;
   if (sortWithinBudget(push.nodes, most, deep.head, deep.run)) {
-    vec4 accumulated = vec4(0.0);
-    uint count = 0u, samples = 0u;
-    for (uint node = deep.head; node < most && count <= most; node = push.nodes.at[node].next) {
-      ++count;
-      const vec4 color = push.nodes.at[node].color;
-      if (color.a < 0.0) continue;  // cut out
-      ++samples;
-      if (push.alphaThreshold > 0.0 && accumulated.a >= push.alphaThreshold) continue;
-      accumulated = blendUnder(accumulated, color);
-    }
+    const BlendedList list = blendList(push.nodes, most, deep.head, push.alphaThreshold);
     const ivec2 place =
         cornerOf(deep.block.number, push.frame.c.size) + ivec2(pixelOf(deep.bit));
-    imageStore(target, place, overOpaque(accumulated, imageLoad(target, place)));
-    atomicAdd(push.counters.c.deepBlended, count);
+    imageStore(target, place, overOpaque(list.accumulated, imageLoad(target, place)));
+    atomicAdd(push.counters.c.deepBlended, list.nodes);
     if (deep.block.count > HIGH_LIST && (push.flags & COUNT_SAMPLES) != 0u)
-      atomicAdd(push.counters.c.samples, samples);  // others were counted by blend.comp
+      atomicAdd(push.counters.c.samples, list.blended);  // others were counted by blend.comp
     deep.done = 1u;
   } else if (push.round + 1u == push.rounds) {
     atomicAdd(push.counters.c.unfinished, 1u);

@@ -36,7 +36,7 @@ Taken take(uint at, bool covered, vec2 pixel, float opaque, bool full) {
   Taken taken;
   const float invW = invWOf(t, pixel);
   taken.f.depth = depthOf(push.frame, invW);
-  taken.f.id = idOf(t);
+  taken.f.id = t.id;
   taken.f.color = vec4(0.0);
   taken.kept = covered && !isHidden(taken.f.depth, opaque);
   taken.blends = taken.kept && !full;

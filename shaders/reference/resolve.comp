@@ -2,6 +2,7 @@
 // Sorts each pixel's list in place (common/list_sort.glsl), whatever its length, and blends it front
 // to back; a pixel that reaches the budget of a round goes on in the next.
 #include "common/bindings.glsl"
+#include "common/list_blend.glsl"
 #include "common/list_sort.glsl"
 #include "reference/lists.h"
 
@@ -14,16 +15,10 @@ shared uint groupResolved;
 shared uint groupUnfinished;
 
 void blendPixel(ivec2 pixel, uint node) {
-  vec4 accumulated = vec4(0.0);
-  uint count = 0u;
-  const uint most = push.counters.c.fragments;
-  for (; node < most && count <= most; node = push.nodes.at[node].next) {
-    accumulated = blendUnder(accumulated, unpackColor(push.nodes.at[node].color));
-    ++count;
-  }
-  imageStore(target, pixel, overOpaque(accumulated, imageLoad(target, pixel)));
-  atomicMax(groupDeepest, count);
-  atomicAdd(groupResolved, count);
+  const BlendedList list = blendList(push.nodes, push.counters.c.fragments, node, 0.0);
+  imageStore(target, pixel, overOpaque(list.accumulated, imageLoad(target, pixel)));
+  atomicMax(groupDeepest, list.nodes);
+  atomicAdd(groupResolved, list.nodes);
   atomicAdd(groupCovered, 1u);
 }
 

@@ -90,7 +90,7 @@ void deliverSamples(inout Owner owner, TriHalfBlock item, uint samples, ivec2 co
       Sample s;
       const float invW = invWOf(t, vec2(pixelOf(hit.y)));
       s.depth = depthOf(push.frame, invW);
-      s.id = idOf(t);
+      s.id = t.id;
       exists = shadePrepared(push.frame, t, vec2(pixelOf(hit.y)), invW, s.color);
       if (exists) storeSample(lane, s);
     }

@@ -8,7 +8,7 @@ shared uint masks[TEAMS * PREPARED_COUNT];  // of the prepared triangles
 // The fragment of a prepared triangle at a pixel.
 Fragment fragmentOf(Prepared t, ivec2 corner, uint bit) {
   const float invW = invWOf(t, vec2(pixelOf(bit)));
-  Fragment f = fragmentAt(corner, bit, depthOf(push.frame, invW), idOf(t));
+  Fragment f = fragmentAt(corner, bit, depthOf(push.frame, invW), t.id);
   f.source.triangle = t;
   f.source.invW = invW;
   return f;

@@ -14,20 +14,24 @@
 // Whether anything is interpolated.
 #define INTERPOLATES (HAS_SMOOTH == 1 || HAS_TEXTURES == 1 || HAS_GRADIENTS == 1)
 
-// What the fragments of a triangle need. The origin is the half-block's first sample.
+// What the fragments of a triangle need. Functions over the half-block are given by their value at its first sample,
+// and their slope per pixel to the right and per pixel down. prepared.glsl packs this where it is stored.
 struct Prepared {
-  vec4 w;      // 1 / w: at the origin, per pixel right, per pixel down; PREPARED_* bits
-  vec4 n0;     // normal of the corner that weighs 1 - b1 - b2; alpha cutoff
+  float invW;  // 1 / w
+  vec2 invWSlope;
+  float minInvW, maxInvW;  // of the corners
+  uint id;                 // primitive id
+  uint bits;               // PREPARED_*
   vec4 color;  // of the material, times the vertex color if all corners have the same. If nothing is interpolated: shaded;
                // alpha is negative if the material cuts the triangle out
-  vec4 range;  // smallest and largest 1 / w; primitive id
   // Where the scene interpolates:
-  vec4 b1, b2;   // the weights over w: at the origin, per pixel right, per pixel down
-  vec3 n1, n2;   // normals of the other corners less that of the first
+  float alphaCutoff;
+  float b1, b2;  // weights of the second and third corner, over w
+  vec2 b1Slope, b2Slope;
+  vec3 normal, normal1, normal2;  // of the first corner; differences of the second and third from it
   // Of triangles with textures or colors:
-  vec4 uvs;           // texture coordinates of the first corner, difference of the second
-  vec4 more;          // difference of the third corner; packed colors of the second and third
-  uint firstColor;    // of the first corner, packed
+  vec2 uv, uv1, uv2;   // likewise
+  uvec3 vertexColors;  // of the three corners, packed
 };
 
 struct Sample {
@@ -100,11 +104,11 @@ Prepared prepare(Mesh mesh, FrameBuffer frame, ShadeTriangle s, ivec2 corner) {
   precise const vec3 n1 = unpackNormal(s.normals[1]) - n0;
   precise const vec3 n2 = unpackNormal(s.normals[2]) - n0;
   Prepared p;
-  uint bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas;
-  p.firstColor = 0u;
-  if (material.ignoreVertexAlpha != 0u) bits |= PREPARED_IGNORE_ALPHA;
+  p.bits = s.material << PREPARED_MATERIAL_SHIFT | material.atlas;
+  if (material.ignoreVertexAlpha != 0u) p.bits |= PREPARED_IGNORE_ALPHA;
   p.color = material.baseColor;
-  p.uvs = p.more = vec4(0.0);
+  p.uv = p.uv1 = p.uv2 = vec2(0.0);
+  p.vertexColors = uvec3(0u);
 #if HAS_ATTRIBUTES
   if ((s.flags & TRIANGLE_COLORED) != 0u || material.atlas != 0u) {
     const uint c = s.flags >> TRIANGLE_CORNER_SHIFT;
@@ -113,11 +117,12 @@ Prepared prepare(Mesh mesh, FrameBuffer frame, ShadeTriangle s, ivec2 corner) {
     const vec4 v1 = mesh.vertices.at[pick(quad, (c >> 2) & 3u)].uvColorMaterial;
     const vec4 v2 = mesh.vertices.at[pick(quad, (c >> 4) & 3u)].uvColorMaterial;
     const uvec3 colors = floatBitsToUint(vec3(v0.z, v1.z, v2.z));
-    p.uvs = vec4(v0.xy, v1.xy - v0.xy);
-    p.more = vec4(v2.xy - v0.xy, uintBitsToFloat(colors.yz));
-    p.firstColor = colors.x;
+    p.uv = v0.xy;
+    p.uv1 = v1.xy - v0.xy;
+    p.uv2 = v2.xy - v0.xy;
+    p.vertexColors = colors;
     if (colors.y != colors.x || colors.z != colors.x) {
-      bits |= PREPARED_COLORED;
+      p.bits |= PREPARED_COLORED;
     } else {
       const vec4 color = unpackUnorm4x8(colors.x);
       p.color.rgb *= color.rgb;
@@ -137,13 +142,19 @@ Prepared prepare(Mesh mesh, FrameBuffer frame, ShadeTriangle s, ivec2 corner) {
   vec4 color;
   p.color = shade(flat_, surface, color) ? color : vec4(-1.0);
 #endif
-  p.w = vec4(originInvW(s, corner), s.invWSlope, uintBitsToFloat(bits));
-  p.n0 = vec4(n0, material.alphaCutoff);
-  p.range = vec4(bounds, uintBitsToFloat(s.id), 0.0);
-  p.b1 = vec4(b1, s.b1Slope, 0.0);
-  p.b2 = vec4(b2, s.b2Slope, 0.0);
-  p.n1 = n1;
-  p.n2 = n2;
+  p.invW = originInvW(s, corner);
+  p.invWSlope = s.invWSlope;
+  p.minInvW = bounds.x;
+  p.maxInvW = bounds.y;
+  p.id = s.id;
+  p.alphaCutoff = material.alphaCutoff;
+  p.b1 = b1;
+  p.b2 = b2;
+  p.b1Slope = s.b1Slope;
+  p.b2Slope = s.b2Slope;
+  p.normal = n0;
+  p.normal1 = n1;
+  p.normal2 = n2;
   return p;
 }
 
@@ -151,8 +162,7 @@ Prepared prepare(Mesh mesh, FrameBuffer frame, uint slot, ivec2 corner) {
   return prepare(mesh, frame, loadShading(mesh, slot), corner);
 }
 
-float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.w.x, p.w.yz, p.range.x, p.range.y, pixel); }
-uint idOf(Prepared p) { return floatBitsToUint(p.range.z); }
+float invWOf(Prepared p, vec2 pixel) { return planeInvW(p.invW, p.invWSlope, p.minInvW, p.maxInvW, pixel); }
 
 // The color (straight, linear) of the fragment at `pixel` (0..7, 0..3) of the half-block. Returns false if the
 // material cuts it out.
@@ -161,42 +171,41 @@ bool shadePrepared(FrameBuffer frame, Prepared p, vec2 pixel, float invW, out ve
   color = p.color;
   return color.a >= 0.0;
 #else
-  const uint bits = floatBitsToUint(p.w.w);
   GpuMaterial material;
   material.baseColor = p.color;
-  material.alphaCutoff = p.n0.w;
-  material.atlas = HAS_TEXTURES == 1 ? bits & PREPARED_ATLAS : 0u;
+  material.alphaCutoff = p.alphaCutoff;
+  material.atlas = HAS_TEXTURES == 1 ? p.bits & PREPARED_ATLAS : 0u;
   material.ignoreVertexAlpha = 1u;
   Surface s;
   s.color = vec4(1.0);  // contained in `baseColor`
-  precise const float over1 = fma(p.b1.y, pixel.x, fma(p.b1.z, pixel.y, p.b1.x));
-  precise const float over2 = fma(p.b2.y, pixel.x, fma(p.b2.z, pixel.y, p.b2.x));
+  precise const float over1 = fma(p.b1Slope.x, pixel.x, fma(p.b1Slope.y, pixel.y, p.b1));
+  precise const float over2 = fma(p.b2Slope.x, pixel.x, fma(p.b2Slope.y, pixel.y, p.b2));
   precise const float inverse = 1.0 / invW;
   precise const vec2 b = clamp(vec2(over1, over2) * inverse, 0.0, 1.0);
   const float b1 = b.x, b2 = b.y;
-  precise const vec3 normal = fma(vec3(b1), p.n1, fma(vec3(b2), p.n2, p.n0.xyz));
+  precise const vec3 normal = fma(vec3(b1), p.normal1, fma(vec3(b2), p.normal2, p.normal));
   s.normal = normal;
 #if HAS_TEXTURES
   if (material.atlas != 0u) {
-    material.atlasRect = frame.c.materials.at[bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
-    const vec2 uv2 = p.more.xy;
-    precise const vec2 uv = fma(vec2(b1), p.uvs.zw, fma(vec2(b2), uv2, p.uvs.xy));
+    material.atlasRect = frame.c.materials.at[p.bits >> PREPARED_MATERIAL_SHIFT].atlasRect;
+    precise const vec2 uv = fma(vec2(b1), p.uv1, fma(vec2(b2), p.uv2, p.uv));
     // uv / w is linear on the screen; the quotient rule gives the derivatives of uv.
-    precise const vec2 dx = (p.uvs.xy * p.w.y + p.uvs.zw * p.b1.y + uv2 * p.b2.y - uv * p.w.y) * inverse;
-    precise const vec2 dy = (p.uvs.xy * p.w.z + p.uvs.zw * p.b1.z + uv2 * p.b2.z - uv * p.w.z) * inverse;
+    const vec2 w = p.invWSlope, s1 = p.b1Slope, s2 = p.b2Slope;
+    precise const vec2 dx = (p.uv * w.x + p.uv1 * s1.x + p.uv2 * s2.x - uv * w.x) * inverse;
+    precise const vec2 dy = (p.uv * w.y + p.uv1 * s1.y + p.uv2 * s2.y - uv * w.y) * inverse;
     s.uv = uv;
     s.uvDx = dx;
     s.uvDy = dy;
   }
 #endif
 #if HAS_GRADIENTS
-  if ((bits & PREPARED_COLORED) != 0u) {
-    const vec4 c0 = unpackUnorm4x8(p.firstColor);
-    precise const vec4 c1 = unpackUnorm4x8(floatBitsToUint(p.more.z)) - c0;
-    precise const vec4 c2 = unpackUnorm4x8(floatBitsToUint(p.more.w)) - c0;
+  if ((p.bits & PREPARED_COLORED) != 0u) {
+    const vec4 c0 = unpackUnorm4x8(p.vertexColors.x);
+    precise const vec4 c1 = unpackUnorm4x8(p.vertexColors.y) - c0;
+    precise const vec4 c2 = unpackUnorm4x8(p.vertexColors.z) - c0;
     precise const vec4 c = fma(vec4(b1), c1, fma(vec4(b2), c2, c0));
     material.baseColor.rgb *= c.rgb;
-    if ((bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
+    if ((p.bits & PREPARED_IGNORE_ALPHA) == 0u) material.baseColor.a *= c.a;
   }
 #endif
   return shade(material, s, color);
@@ -208,7 +217,7 @@ bool hasCutoff(Prepared p) {
 #if INTERPOLATES == 0
   return p.color.a < 0.0;
 #else
-  return p.n0.w > 0.0;
+  return p.alphaCutoff > 0.0;
 #endif
 }
 

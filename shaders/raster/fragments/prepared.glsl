@@ -20,39 +20,50 @@ shared vec4 preparedWords[TEAMS * PREPARED_COUNT * PREPARED_WORDS];
 
 void storePrepared(uint at, Prepared p) {
   const uint place = at * PREPARED_WORDS;
-  preparedWords[place + 0u] = p.w;
+  preparedWords[place + 0u] = vec4(p.invW, p.invWSlope, uintBitsToFloat(p.bits));
   preparedWords[place + 1u] = p.color;
-  preparedWords[place + 2u] = vec4(p.range.xyz, uintBitsToFloat(p.firstColor));
+  preparedWords[place + 2u] = vec4(p.minInvW, p.maxInvW, uintBitsToFloat(uvec2(p.id, p.vertexColors.x)));
 #if INTERPOLATES
-  preparedWords[place + 3u] = p.n0;
-  preparedWords[place + 4u] = vec4(p.b1.xyz, p.n1.x);
-  preparedWords[place + 5u] = vec4(p.b2.xyz, p.n1.y);
-  preparedWords[place + 6u] = vec4(p.n2, p.n1.z);
+  preparedWords[place + 3u] = vec4(p.normal, p.alphaCutoff);
+  preparedWords[place + 4u] = vec4(p.b1, p.b1Slope, p.normal1.x);
+  preparedWords[place + 5u] = vec4(p.b2, p.b2Slope, p.normal1.y);
+  preparedWords[place + 6u] = vec4(p.normal2, p.normal1.z);
 #endif
-#if HAS_TEXTURES == 1 || HAS_GRADIENTS == 1
-  preparedWords[place + 7u] = p.uvs;
-  preparedWords[place + 8u] = p.more;
+#if HAS_MORE
+  preparedWords[place + 7u] = vec4(p.uv, p.uv1);
+  preparedWords[place + 8u] = vec4(p.uv2, uintBitsToFloat(p.vertexColors.yz));
 #endif
 }
 
 Prepared loadPrepared(uint at) {
   const uint place = at * PREPARED_WORDS;
   Prepared p;
-  p.w = preparedWords[place + 0u];
+  const vec4 word0 = preparedWords[place + 0u], word2 = preparedWords[place + 2u];
+  p.invW = word0.x;
+  p.invWSlope = word0.yz;
+  p.bits = floatBitsToUint(word0.w);
   p.color = preparedWords[place + 1u];
-  p.range = preparedWords[place + 2u];
+  p.minInvW = word2.x;
+  p.maxInvW = word2.y;
+  p.id = floatBitsToUint(word2.z);
 #if INTERPOLATES
-  p.n0 = preparedWords[place + 3u];
-  p.b1 = preparedWords[place + 4u];
-  p.b2 = preparedWords[place + 5u];
-  const vec4 last = preparedWords[place + 6u];
-  p.n1 = vec3(p.b1.w, p.b2.w, last.w);
-  p.n2 = last.xyz;
+  const vec4 word3 = preparedWords[place + 3u], word4 = preparedWords[place + 4u];
+  const vec4 word5 = preparedWords[place + 5u], word6 = preparedWords[place + 6u];
+  p.normal = word3.xyz;
+  p.alphaCutoff = word3.w;
+  p.b1 = word4.x;
+  p.b1Slope = word4.yz;
+  p.b2 = word5.x;
+  p.b2Slope = word5.yz;
+  p.normal1 = vec3(word4.w, word5.w, word6.w);
+  p.normal2 = word6.xyz;
 #endif
-#if HAS_TEXTURES == 1 || HAS_GRADIENTS == 1
-  p.firstColor = floatBitsToUint(p.range.w);
-  p.uvs = preparedWords[place + 7u];
-  p.more = preparedWords[place + 8u];
+#if HAS_MORE
+  const vec4 word7 = preparedWords[place + 7u], word8 = preparedWords[place + 8u];
+  p.uv = word7.xy;
+  p.uv1 = word7.zw;
+  p.uv2 = word8.xy;
+  p.vertexColors = floatBitsToUint(vec3(word2.w, word8.zw));
 #endif
   return p;
 }
