@@ -118,8 +118,9 @@ def test_a_second_signal_ends_it_at_once(tmp_path, run):
     results = tmp_path / "results"
     toml = tmp_path / "faults.toml"
     arguments = [WITH_FAULTS, "run", toml, "--results", results, "--size", "40x20"]
-    stuck = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                             env={**os.environ, "OITLAB_FAULT": "stuck"})
+    # A shell that starts the tests with `&` has them ignore SIGINT, and `run` respects that.
+    stuck = subprocess.Popen(["env", "--default-signal=INT", *arguments], stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL, env={**os.environ, "OITLAB_FAULT": "stuck"})
     deadline = time.monotonic() + 60
     while not list(results.glob("running/*/*.owner")) and time.monotonic() < deadline:
         time.sleep(0.02)
