@@ -14,7 +14,7 @@ LAYERS = PROGRAM.parent / "layers"
 # Every method, every kind of fragment: all cells of one image size are one group. One frame a block
 # and one block a cell: the same calls in every run, whatever the machine is busy with. Small, since
 # the tests run it often: about a second of a CPU.
-SWEEP = """
+PLAN = """
 name = "faults"
 sizes = ["24x16"]
 scenes = ["planes", { source = "boxes", detail = 0.05 }]
@@ -35,15 +35,16 @@ COMPUTE = """{ method = "abuffer", source = "compute" },
     { method = "blend", order = ["submission", "sorted"], source = "compute" },
     { method = "depth_peeling", mode = ["front_to_back", "dual"], source = "compute" },
     { method = "reference", source = ["hardware", "compute"] }, { method = "wboit", source = "compute" }"""
+SWEEP, COMPUTE_SWEEP = PLAN.replace("METHODS", HARDWARE), PLAN.replace("METHODS", COMPUTE)
 
 
 class Sweep:
     """The small sweep in a folder of its own; each run() goes on where the last one stopped."""
 
-    def __init__(self, program, folder, methods=HARDWARE):
+    def __init__(self, program, folder, text=SWEEP):
         self.program, self.folder = program, folder
         self.experiment, self.results = folder / "faults.toml", folder / "results"
-        self.experiment.write_text(SWEEP.replace("METHODS", methods))
+        self.experiment.write_text(text)
 
     @property
     def command(self):

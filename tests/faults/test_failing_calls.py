@@ -5,7 +5,7 @@ import json
 import os
 
 import pytest
-from small_sweep import COMPUTE, HARDWARE, LAYERS, Sweep, assert_right
+from small_sweep import COMPUTE_SWEEP, LAYERS, SWEEP, Sweep, assert_right
 
 pytestmark = pytest.mark.skipif(not (LAYERS / "fail_calls.json").is_file(),
                                 reason="the layer fail_calls is not built beside the program")
@@ -47,7 +47,7 @@ def counts(program, tmp_path_factory):
 @pytest.fixture(scope="session")
 def compute(program, tmp_path_factory):
     """The cells of a run with compute fragments in which nothing fails, and its calls."""
-    whole = Sweep(program, tmp_path_factory.mktemp("compute"), COMPUTE)
+    whole = Sweep(program, tmp_path_factory.mktemp("compute"), COMPUTE_SWEEP)
     counts = count_calls(whole)
     cells = whole.cells()
     assert len(cells) == 16 and all(cell["status"] == "ok" for cell in cells.values())
@@ -112,7 +112,7 @@ def test_one_call_fails(sweep, undisturbed, counts, function, where, result):
     ("vkCreateComputePipelines", 0.9, OUT_OF_MEMORY), ("vkQueueSubmit", 0.6, LOST)])
 def test_one_call_fails_with_compute_fragments(program, tmp_path, compute, function, where, result):
     expected, counts = compute
-    sweep = Sweep(program, tmp_path, COMPUTE)
+    sweep = Sweep(program, tmp_path, COMPUTE_SWEEP)
     happened, _ = check(sweep, expected, function, f"{function}:{1 + int(where * (counts[function] - 1))}:{result}")
     assert happened
     mend(sweep, expected)
@@ -161,9 +161,9 @@ def test_every_call_of_every_function_fails_once(program, tmp_path, request, sou
     if not long:
         pytest.skip("more than a thousand runs of a second each: pytest --long")
     if source == "compute":
-        methods, (undisturbed, counts) = COMPUTE, request.getfixturevalue("compute")
+        text, (undisturbed, counts) = COMPUTE_SWEEP, request.getfixturevalue("compute")
     else:
-        methods, undisturbed, counts = HARDWARE, *map(request.getfixturevalue, ("undisturbed", "counts"))
+        text, undisturbed, counts = SWEEP, *map(request.getfixturevalue, ("undisturbed", "counts"))
     happened, wrong = 0, []
     for function, count in sorted(counts.items()):
         for result in (OUT_OF_MEMORY, *([LOST] if function in WAITS else [])):
@@ -171,7 +171,7 @@ def test_every_call_of_every_function_fails_once(program, tmp_path, request, sou
                 folder = tmp_path / f"{function}-{call}-{result}"
                 folder.mkdir()
                 try:
-                    happened += check(Sweep(program, folder, methods), undisturbed, function,
+                    happened += check(Sweep(program, folder, text), undisturbed, function,
                                       f"{function}:{call}:{result}")[0]
                 except (AssertionError, json.JSONDecodeError) as error:
                     wrong.append(str(error))
