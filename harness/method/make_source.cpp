@@ -19,8 +19,10 @@ int deliverOf(const std::string& name, bool dependsOnOrder) {
 
 }  // namespace
 
-std::vector<Parameter> sourceParameters() {
-  return {choice("source", {"hardware", "compute"},
+std::vector<Parameter> sourceParameters(bool computeFirst) {
+  std::vector<std::string> sources = {"hardware", "compute"};
+  if (computeFirst) std::swap(sources[0], sources[1]);
+  return {choice("source", sources,
                  "where fragments come from: fragment shaders, or the compute rasterizer"),
           choice("deliver", {"auto", "any", "submission", "near_to_far", "far_to_near", "shuffled"},
                  "source=compute: the order of a pixel's fragments; auto: submission if the image "

@@ -6,7 +6,8 @@
 namespace oitlab {
 
 /// The parameters that every method has that takes fragments from a source: source, deliver, seed.
-std::vector<Parameter> sourceParameters();
+/// `computeFirst`: the default source is compute.
+std::vector<Parameter> sourceParameters(bool computeFirst = false);
 
 /// The source that the parameters choose. `dependsOnOrder`: the method's image depends on the order
 /// of a pixel's fragments, so that deliver=auto means submission. Throws InputError where

@@ -56,7 +56,8 @@ const MethodInfo& findMethod(const std::string& name) {
 
 RegisterMethod::RegisterMethod(MethodInfo info) {
   if (info.takesFragments)
-    for (Parameter& parameter : sourceParameters()) info.parameters.push_back(std::move(parameter));
+    for (Parameter& parameter : sourceParameters(info.computeFirst))
+      info.parameters.push_back(std::move(parameter));
   const bool isNew = registry().emplace(info.name, info).second;
   OITLAB_CHECK(isNew);
 }

@@ -67,6 +67,9 @@ struct MethodInfo {
   std::vector<std::string> features;  ///< Vulkan features it needs beyond the baseline
   /// It takes fragments from a source (makeSource()), and gets the parameters of one.
   bool takesFragments = false;
+  /// Its default is source=compute. Exclusive methods have it, since few devices have what they
+  /// need of hardware.
+  bool computeFirst = false;
   std::function<std::unique_ptr<Method>(const MethodContext&)> make;
 
   /// The features that `device` lacks for this method; empty when the method can run there.

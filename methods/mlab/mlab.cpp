@@ -41,6 +41,7 @@ const RegisterMethod registered({
                 "of a node's color and transmittance, rounded at each merge; depth and id take 8 "
                 "bytes more; the paper has rgba8")},
     .takesFragments = true,
+    .computeFirst = true,
     .make = makeMethod<Mlab>,
 });
 

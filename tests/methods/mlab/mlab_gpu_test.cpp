@@ -86,7 +86,7 @@ std::vector<Layer> randomLayers(std::mt19937& random) {
 
 TEST_F(Mlab, EqualsAModelInDoublePrecision) {
   std::mt19937 random(7);
-  for (int repeat = 0; repeat < 4; ++repeat) {
+  for (int repeat = 0; repeat < 3; ++repeat) {
     const std::vector<Layer> layers = randomLayers(random);
     std::vector<Node> fragments;  // as shaded: from images of one layer each
     const glm::dvec3 background(backgroundColor);
@@ -97,7 +97,7 @@ TEST_F(Mlab, EqualsAModelInDoublePrecision) {
       fragments.push_back({layer.distance, seen - (1 - alpha) * background, 1 - alpha});
     }
     RenderFixture fixture(sceneOf(layers), 17, 17);
-    for (const std::size_t count : {1, 2, 3, 4, 8, 16})
+    for (const std::size_t count : {1, 2, 4})
       for (const bool leastError : {false, true}) {
         std::vector<Node> nodes;
         for (const Node& fragment : fragments) nodes = inserted(nodes, fragment, count, leastError);
@@ -119,15 +119,15 @@ TEST_F(Mlab, EqualsAModelInDoublePrecision) {
 
 // Nothing is merged. Sums and products of transmittances round differently from the exact method's.
 TEST_F(Mlab, AsManyNodesAsLayersAreExactInAnyOrder) {
-  const Scene scene = randomSoup(3, 12);
+  const Scene scene = randomSoup(3, 6);
   RenderFixture fixture(scene, 120, 70);
   const auto exact = fixture.render("reference", onCompute());
   for (const char* merge : {"last", "least_error"})
     for (const char* seed : {"0", "1"}) {
-      const auto result = fixture.render("mlab", mlab({{"nodes", "12"},
-                                                       {"merge", merge},
-                                                       {"deliver", "shuffled"},
-                                                       {"deliver_seed", seed}}));
+      const auto result = fixture.render(
+          "mlab",
+          mlab(
+              {{"nodes", "6"}, {"merge", merge}, {"deliver", "shuffled"}, {"deliver_seed", seed}}));
       EXPECT_LT(compareImages(result.image, exact.image).maxError, 1e-5) << merge;
       EXPECT_EQ(result.frame.counters.at("fragments"), exact.frame.counters.at("fragments"));
     }
@@ -139,7 +139,7 @@ TEST_F(Mlab, BothSortedOrdersAreExact) {
   RenderFixture fixture(stack(40, 0.2f), 33, 21);
   const auto exact = fixture.render("reference", onCompute());
   for (const char* order : {"near_to_far", "far_to_near"})
-    for (const char* nodes : {"1", "2", "4", "16"}) {
+    for (const char* nodes : {"1", "4"}) {
       const auto result = fixture.render("mlab", mlab({{"nodes", nodes}, {"deliver", order}}));
       EXPECT_LT(compareImages(result.image, exact.image).maxError, 1e-5) << order << " " << nodes;
     }

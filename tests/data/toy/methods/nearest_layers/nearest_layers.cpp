@@ -21,6 +21,7 @@ const RegisterMethod registered({
     .exact = false,
     .parameters = {integer("k", 4, 1, 8, "layers that a pixel keeps", "fragments")},
     .takesFragments = true,
+    .computeFirst = true,
     .make = makeMethod<NearestLayers>,
 });
 
