@@ -28,8 +28,9 @@ struct Frame {
   bool instrumented;  ///< stages are timed, and counters may cost time
   FrameTimer& timer;
   std::function<void(std::uint32_t part)> fillTarget = {};  ///< see finishTarget()
+  bool computeRasterizer = false;  ///< Method::usesComputeRasterizer() of the method
 
-  /// Only for methods whose finishesTarget() is true. They call it for part = 0, 1, ...
+  /// Only for methods whose usesComputeRasterizer() is true. They call it for part = 0, 1, ...
   /// targetParts - 1 in turn. It fills one part of the target with the background, if the opaque
   /// pass has not done so. It is a compute shader, and short dispatches can run beside it. After
   /// the last part the method needs a barrier between compute shaders before it touches the target.

@@ -7,7 +7,8 @@
 namespace oitlab {
 
 FrameBindings::FrameBindings(const Device& device, const GpuScene& scene, const Target& target,
-                             std::span<const GpuImage* const> methodImages) {
+                             std::span<const GpuImage* const> methodImages,
+                             const GpuImage* opaqueDepth) {
   OITLAB_CHECK_OP(methodImages.size(), <=, std::size_t(Device::methodImageCount));
   vk::SamplerCreateInfo sampler;
   sampler.magFilter = sampler.minFilter = vk::Filter::eLinear;
@@ -32,8 +33,10 @@ FrameBindings::FrameBindings(const Device& device, const GpuScene& scene, const 
       vk::DescriptorImageInfo(*atlasSampler_, scene.opaqueAtlas().view(), readOnly),
       vk::DescriptorImageInfo(*atlasSampler_, scene.transparentAtlas().view(), readOnly),
       vk::DescriptorImageInfo({}, target.color().view(), vk::ImageLayout::eGeneral),
-      vk::DescriptorImageInfo(*depthSampler_, target.depth().view(),
-                              vk::ImageLayout::eDepthStencilReadOnlyOptimal),
+      opaqueDepth != nullptr
+          ? vk::DescriptorImageInfo(*depthSampler_, opaqueDepth->view(), readOnly)
+          : vk::DescriptorImageInfo(*depthSampler_, target.depth().view(),
+                                    vk::ImageLayout::eDepthStencilReadOnlyOptimal),
   };
   // Every element must be valid, so elements that the method does not use refer to an atlas.
   std::array<vk::DescriptorImageInfo, Device::methodImageCount> own;

@@ -9,11 +9,13 @@ namespace oitlab {
 
 /// The descriptor set of shaders/common/bindings.glsl for one scene and target; both must outlive
 /// it. A method that samples its own images makes a set with them: at most
-/// Device::methodImageCount, and they must be in shaderReadOnlyOptimal when they are sampled.
+/// Device::methodImageCount, and they must be in shaderReadOnlyOptimal when they are sampled. So
+/// must `opaqueDepth`, which takes the place of the target's depth if it is not null.
 class FrameBindings {
  public:
   FrameBindings(const Device& device, const GpuScene& scene, const Target& target,
-                std::span<const GpuImage* const> methodImages = {});
+                std::span<const GpuImage* const> methodImages = {},
+                const GpuImage* opaqueDepth = nullptr);
   vk::DescriptorSet set() const { return *set_; }
 
  private:

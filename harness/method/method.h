@@ -41,8 +41,10 @@ class Method {
   /// visible.
   virtual void record(const Frame& frame) = 0;
 
-  /// Whether record() calls Frame::finishTarget(), and does not touch the target before that.
-  virtual bool finishesTarget() const { return false; }
+  /// Whether its fragments come from the compute rasterizer (raster::FrontEnd). Then the opaque
+  /// depth that shaders read is of that rasterizer, and record() calls Frame::finishTarget() and
+  /// does not touch the target before that.
+  virtual bool usesComputeRasterizer() const { return false; }
 
   /// Called after the device has finished the frame.
   virtual Status status() = 0;

@@ -8,7 +8,7 @@ namespace oitlab {
 /// recordPass() the push constants. Blended and exclusive programs leave the image in the target.
 class OnePassMethod : public Method {
  public:
-  bool finishesTarget() const override { return source_->finishesTarget(); }
+  bool usesComputeRasterizer() const override { return source_->usesComputeRasterizer(); }
 
   Status status() override {
     if (source_->grow()) return {.recordAgain = true};

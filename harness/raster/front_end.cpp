@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "scene/quads.h"
+#include "util/check.h"
 #include "util/error.h"
 #include "util/rounding.h"
 
@@ -149,6 +150,8 @@ RasterPush FrontEnd::addresses(const Frame& frame) const {
 }
 
 void FrontEnd::record(const Frame& frame, std::initializer_list<const Buffer*> alsoZeroed) {
+  // Else the opaque depth would be the hardware's, which these fragments cannot be compared with.
+  OITLAB_CHECK(frame.computeRasterizer);
   const RasterPush push = addresses(frame);
   auto run = [&](const Pipeline& pipeline, auto&& dispatch) {
     frame.bind(pipeline, push);

@@ -20,6 +20,8 @@ class FragmentCounter : public Method {
         counts_(device, unlisted_, "fragment counts", bytesFor(target)),
         readback_(device, unlisted_, "counts readback", bytesFor(target), BufferKind::readback) {}
 
+  bool usesComputeRasterizer() const override { return source_->usesComputeRasterizer(); }
+
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;
     const CountPush push{source_->begin(frame), counts_.address()};

@@ -32,12 +32,8 @@ Renderer::Renderer(const Device& device, const GpuScene& scene, const Target& ta
     : device_(device),
       scene_(scene),
       target_(target),
-      bindings_(device, scene, target),
       timer_(device),
-      opaque_(Pipeline::graphics(device, {.fragmentShader = "common/opaque.frag",
-                                          .colorFormats = {vulkanFormat(target.format())},
-                                          .depthFormat = Target::depthFormat,
-                                          .depthWrite = true})),
+      opaque_(device, scene, target, OpaquePass::DepthOf::hardware),
       background_(Pipeline::compute(device, "common/background.comp",
                                     {{"TARGET_FORMAT", formatName(target.format())}})),
       constants_(device, memory_, "frame constants", sizeof(FrameConstants), BufferKind::upload),
@@ -72,22 +68,24 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
   constants.transparentIds = scene_.transparentIds().address();
   constants_.mapped<FrameConstants>()[0] = constants;
 
+  const OpaquePass& opaque = opaquePassOf(method);
   FrameResult result;
   try {
     commands_.reset();
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     Frame frame{
-        device_,   commands_,    scene_, target_, camera, bindings_.set(), constants_.address(),
+        device_,   commands_,    scene_, target_, camera, opaque.bindings(), constants_.address(),
         constants, instrumented, timer_};
+    frame.computeRasterizer = method.usesComputeRasterizer();
     timer_.begin(commands_, instrumented);
     frame.stage("opaque", [&] {
       // lavapipe (Mesa 22.3) crashes when a clear, a dispatch and a render pass follow each other.
       if (scene_.opaqueCount() > 0 || !depthCleared_ || device_.info().isCpu()) {
-        recordOpaque(frame);
+        opaque.record(frame);
         return;
       }
       // In an instrumented frame stages are timed separately, so they must not overlap.
-      if (method.finishesTarget() && !instrumented) {
+      if (method.usesComputeRasterizer() && !instrumented) {
         frame.fillTarget = [&](std::uint32_t part) { recordBackground(frame, part); };
         return;
       }
@@ -114,48 +112,11 @@ FrameResult Renderer::renderOnce(Method& method, const Camera& camera, bool inst
   return result;
 }
 
-void Renderer::recordOpaque(const Frame& frame) const {
-  const Commands& commands = frame.commands;
-  // The last frame's contents are not needed, but its accesses must have finished.
-  target_.color().transition(commands, Layout::eUndefined, Layout::eGeneral, Stage::eAllCommands,
-                             Access::eMemoryWrite, Stage::eColorAttachmentOutput,
-                             Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
-  const auto depthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
-  target_.depth().transition(
-      commands, Layout::eUndefined, Layout::eDepthAttachmentOptimal, Stage::eAllCommands,
-      Access::eMemoryWrite, depthStages,
-      Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
-
-  const auto store = vk::AttachmentStoreOp::eStore;
-  const auto clear = vk::AttachmentLoadOp::eClear;
-  vk::RenderingAttachmentInfo color(target_.color().view(), Layout::eGeneral);
-  color.loadOp = clear;
-  color.storeOp = store;
-  color.clearValue.color = vk::ClearColorValue(backgroundColor.r, backgroundColor.g,
-                                               backgroundColor.b, backgroundColor.a);
-  vk::RenderingAttachmentInfo depth(target_.depth().view(), Layout::eDepthAttachmentOptimal);
-  depth.loadOp = clear;
-  depth.storeOp = store;
-  depth.clearValue.depthStencil = vk::ClearDepthStencilValue(0.0f, 0);  // reversed: infinitely far
-  vk::RenderingInfo info({}, target_.area(), 1);
-  info.setColorAttachments(color).setPDepthAttachment(&depth);
-  commands.beginRendering(info);
-  // A draw is recorded even without opaque triangles: lavapipe (Mesa 22.3) crashes when a pass that
-  // only clears is followed by a dispatch and then by another pass.
-  commands.setViewport(0,
-                       vk::Viewport(0, 0, float(target_.width()), float(target_.height()), 0, 1));
-  commands.setScissor(0, target_.area());
-  frame.bind(opaque_, frame.constants);
-  commands.bindIndexBuffer(scene_.opaqueIndices().vk(), 0, vk::IndexType::eUint32);
-  commands.drawIndexed(scene_.opaqueCount() * 3, 1, 0, 0, 0);
-  commands.endRendering();
-
-  target_.color().transition(commands, Layout::eGeneral, Layout::eGeneral,
-                             Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
-                             Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite);
-  target_.depth().transition(
-      commands, Layout::eDepthAttachmentOptimal, Layout::eDepthStencilReadOnlyOptimal, depthStages,
-      Access::eDepthStencilAttachmentWrite, Stage::eAllCommands, Access::eMemoryRead);
+const OpaquePass& Renderer::opaquePassOf(const Method& method) {
+  if (!method.usesComputeRasterizer()) return opaque_;
+  if (!opaqueOfCompute_)
+    opaqueOfCompute_.emplace(device_, scene_, target_, OpaquePass::DepthOf::computeRasterizer);
+  return *opaqueOfCompute_;
 }
 
 // In a scene without opaque surfaces the depth is infinitely far everywhere. The first frame clears
@@ -185,6 +146,8 @@ std::map<std::string, std::uint64_t> Renderer::memoryByBuffer(const Method& meth
   add("scene: ", scene_.memory());
   add("harness: ", target_.memory());
   add("harness: ", memory_);
+  if (method.usesComputeRasterizer() && opaqueOfCompute_)
+    add("harness: ", opaqueOfCompute_->memory());
   return buffers;
 }
 

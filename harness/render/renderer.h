@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frame/frame.h"
-#include "frame/frame_bindings.h"
 #include "method/method.h"
+#include "render/opaque_pass.h"
 
 namespace oitlab {
 
@@ -39,24 +39,21 @@ class Renderer {
 
  private:
   FrameResult renderOnce(Method& method, const Camera& camera, bool instrumented, Status& status);
-  void recordOpaque(const Frame& frame) const;
+  const OpaquePass& opaquePassOf(const Method& method);
   void recordBackground(const Frame& frame, std::uint32_t part) const;
 
   const Device& device_;
   const GpuScene& scene_;
   const Target& target_;
   MemoryLedger memory_;
-  FrameBindings bindings_;
   FrameTimer timer_;
   bool depthCleared_ = false;
-  Pipeline opaque_, background_;
+  OpaquePass opaque_;
+  std::optional<OpaquePass> opaqueOfCompute_;  // from the first method that needs it
+  Pipeline background_;
   Buffer constants_;
   Commands commands_;
   vk::raii::Fence fence_;
 };
-
-/// The background behind every scene, linear: a light neutral grey, on which both dark and bright
-/// layers are visible.
-inline constexpr glm::vec4 backgroundColor{0.6f, 0.6f, 0.6f, 1.0f};
 
 }  // namespace oitlab

@@ -31,7 +31,7 @@ class ComputeSource : public FragmentSource {
   vk::PipelineStageFlags2 stages() const override {
     return vk::PipelineStageFlagBits2::eComputeShader;
   }
-  bool finishesTarget() const override { return true; }
+  bool usesComputeRasterizer() const override { return true; }
 
   /// For tests: makes the programs that frames would only make when they need them.
   void makeAllPrograms();

@@ -71,8 +71,8 @@ class FragmentSource {
   /// In which programs run: for the method's barriers.
   virtual vk::PipelineStageFlags2 stages() const = 0;
 
-  /// As Method::finishesTarget().
-  virtual bool finishesTarget() const { return false; }
+  /// As Method::usesComputeRasterizer(), for the method.
+  virtual bool usesComputeRasterizer() const { return false; }
 
  private:
   virtual void runBytes(const Frame& frame, const std::string& stage, FragmentPass pass,

@@ -38,7 +38,7 @@ class Abuffer : public Method {
     tally_ = Pipeline::compute(device_, "abuffer/tally.comp", options_.nodes);
   }
 
-  bool finishesTarget() const override { return source_->finishesTarget(); }
+  bool usesComputeRasterizer() const override { return source_->usesComputeRasterizer(); }
 
   void record(const Frame& frame) override {
     counted_ = frame.instrumented;

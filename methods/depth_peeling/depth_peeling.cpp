@@ -44,7 +44,7 @@ class DepthPeeling : public Method {
     allocateDraws();
   }
 
-  bool finishesTarget() const override { return source_->finishesTarget(); }
+  bool usesComputeRasterizer() const override { return source_->usesComputeRasterizer(); }
 
   void record(const Frame& frame) override {
     const vk::DeviceSize drawBytes = (recorded_ + 1) * sizeof(PassDraw);

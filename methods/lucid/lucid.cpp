@@ -41,7 +41,7 @@ class Lucid : public Method {
         buffers_(device_, context.memory),
         programs_(makePrograms(false)) {}
 
-  bool finishesTarget() const override { return true; }
+  bool usesComputeRasterizer() const override { return true; }
 
   void record(const Frame& frame) override {
     if (parameters_.flag("poison")) poison(frame);

@@ -26,7 +26,7 @@ class Reference : public Method {
     allocateNodes(std::uint64_t(double(context.target.pixels()) * depth) + 1);
   }
 
-  bool finishesTarget() const override { return source_->finishesTarget(); }
+  bool usesComputeRasterizer() const override { return source_->usesComputeRasterizer(); }
 
   void record(const Frame& frame) override {
     using Stage = vk::PipelineStageFlagBits2;

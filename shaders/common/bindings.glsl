@@ -8,6 +8,7 @@ layout(set = 0, binding = 1) uniform sampler2D transparentAtlas;
 #ifdef TARGET_FORMAT
 layout(set = 0, binding = 2, TARGET_FORMAT) uniform image2D target;
 #endif
+// Reversed. In frames of methods that use the compute rasterizer it is of that rasterizer (raster/opaque.frag).
 layout(set = 0, binding = 3) uniform sampler2D opaqueDepth;
 layout(set = 0, binding = 4) uniform sampler2D methodImages[4];  // a method's own, unfiltered
 
