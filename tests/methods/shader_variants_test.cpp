@@ -144,6 +144,7 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
       .make({.file = "../tests/data/programs/over.glsl", .access = Access::exclusive});
   ClockProbe probe(device, 1, 1);
   fixtures.back()->render("blend");
+  fixtures.back()->render("lucid");  // with the opaque pass of the compute rasterizer
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());
   EXPECT_GT(made_, variants * 3 / 4) << "most combinations are allowed";
   compileForWideSubgroups(device.shaders());
