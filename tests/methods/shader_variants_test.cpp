@@ -12,6 +12,7 @@
 #include "source/compute_source.h"
 #include "source/hardware_source.h"
 #include "support/gpu.h"
+#include "support/planted.h"
 #include "util/error.h"
 #include "util/paths.h"
 
@@ -144,7 +145,9 @@ TEST_F(ShaderVariants, AllCompileAndNoShaderIsLeftOut) {
       .make({.file = "../tests/data/programs/over.glsl", .access = Access::exclusive});
   ClockProbe probe(device, 1, 1);
   fixtures.back()->render("blend");
-  fixtures.back()->render("lucid");  // with the opaque pass of the compute rasterizer
+  Scene partlyOpaque = loadScene({"planes", {}, 1.0f});
+  makeOpaque(partlyOpaque, partlyOpaque.triangles.size() / 2);
+  RenderFixture(std::move(partlyOpaque), 32, 18).render("lucid");  // has an opaque pass of its own
   countFragments(fixtures.front()->renderer(), fixtures.front()->defaultView());
   EXPECT_GT(made_, variants * 3 / 4) << "most combinations are allowed";
   compileForWideSubgroups(device.shaders());
