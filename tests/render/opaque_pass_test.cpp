@@ -2,6 +2,8 @@
 // rasterizes.
 #include "render/opaque_pass.h"
 
+#include <fmt/format.h>
+
 #include "render/depth_complexity.h"
 #include "support/planted.h"
 #include "support/sources.h"

@@ -219,6 +219,7 @@ TEST_F(Claims, TwoProcessesNeverHoldOneGroupTogether) {
     ::_exit(0);
   };
   std::vector<pid_t> children;
+  children.reserve(4);
   for (int i = 0; i < 4; ++i) children.push_back(fork(work));
   for (const pid_t child : children) {
     int status = -1;

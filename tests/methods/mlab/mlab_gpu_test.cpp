@@ -77,6 +77,7 @@ std::vector<Node> inserted(std::vector<Node> nodes, const Node& fragment, std::s
 std::vector<Layer> randomLayers(std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0, 1);
   std::vector<Layer> layers;
+  layers.reserve(12);
   for (int i = 0; i < 12; ++i)
     layers.push_back({1 + 0.1f * float(i),
                       {unit(random), unit(random), unit(random), 0.1f + 0.8f * unit(random)}});
