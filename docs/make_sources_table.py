@@ -12,6 +12,7 @@ from pathlib import Path
 
 CELLS = Path(__file__).parent / "data" / "sources_h100.json.gz"
 METHODS = ("blend", "wboit", "abuffer", "depth_peeling")
+COMMON = ("opaque", "setup", "binning", "blocks")  # stages of everything that the compute rasterizer feeds
 
 
 def views_of(pack):
@@ -25,15 +26,16 @@ def views_of(pack):
 
 
 def spread(ratios):
-    return f"{statistics.geometric_mean(ratios):.3g} ({min(ratios):.2g} to {max(ratios):.2g})"
+    return f"{statistics.geometric_mean(ratios):.3g} ({min(ratios):.3g} to {max(ratios):.3g})"
 
 
 def main():
     pack = json.loads(gzip.decompress(Path(*sys.argv[1:] or [CELLS]).read_bytes()))
-    faster, against_lucid = {}, {}
+    faster, against_lucid, common = {}, {}, []
     for (name, view), cells in sorted(views_of(pack).items()):
         lucid = cells["lucid", ""]
         counters, row = lucid["counters"], []
+        common.append(sum(lucid["gpu_ms"]["stages"][stage] for stage in COMMON) / lucid["gpu_ms"]["frame"])
         for method in METHODS:
             hardware, compute = (cells[method, source]["gpu_ms"]["frame"] for source in ("hardware", "compute"))
             row.append(f"{hardware:.3g} / {compute:.3g}")
@@ -45,6 +47,7 @@ def main():
     for method in METHODS:
         print(f"{method}: compute is faster by {spread(faster[method])}; it takes {spread(against_lucid[method])} "
               "of lucid's time")
+    print(f"{', '.join(COMMON)}: {spread(common)} of lucid's frame")
 
 
 if __name__ == "__main__":

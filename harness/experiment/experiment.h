@@ -9,8 +9,7 @@ namespace oitlab {
 
 /// How a file is read: what is wanted in place of what it says.
 struct ExperimentOptions {
-  std::string profile =
-      "full";  ///< "full": the file as it is; "brief"; or its table [profile.NAME]
+  std::string profile = "full";  ///< "full": the file as it is; "brief"; or a [profile.NAME]
   bool profileRequired = false;  ///< false: "full" where the file has no such profile
   std::optional<float> detail;   ///< of every generated scene, (0, 1]
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  ///< instead of all sizes

@@ -96,8 +96,7 @@ CellState ResultsFolder::look(const CellSpec& cell) {
   if (schema != content.end() && schema->is_number_integer() && *schema > cellSchema)
     fail<InputError>(
         "{}: its schema is {}, which a newer version wrote; this one knows {}: measure into "
-        "another "
-        "folder, or with that version",
+        "another folder, or with that version",
         file.string(), schema->dump(), cellSchema);
   if (!damage.empty()) {
     state.kind = CellState::damaged;

@@ -220,8 +220,7 @@ bool ComputeSource::grow() {
     if (c.lists.longLists > 0 && !longSeen_) longSeen_ = lacked = true;
     if (makeRoomForLongLists(c.lists.longest)) lacked = true;
   }
-  if (lacked) return true;
-  return false;
+  return lacked;
 }
 
 bool ComputeSource::makeRoomForLongLists(std::uint32_t longest) {

@@ -39,4 +39,17 @@ Differences differencesOf(const Image& a, const Image& b, const CpuImage& truth,
   return found;
 }
 
+void expectEqualButAtEdges(const RenderFixture::Result& hardware,
+                           const RenderFixture::Result& compute, const CpuImage& truth,
+                           const std::string& what) {
+  const double chances =
+      std::max(double(truth.width) * truth.height, double(truth.fragmentCount()));
+  const Differences d = differencesOf(hardware.image, compute.image, truth, tolerance);
+  EXPECT_EQ(d.certain, 0u) << what;
+  EXPECT_LE(double(d.inDoubt), 0.001 * chances) << what;
+  EXPECT_NEAR(double(hardware.frame.counters.at("fragments")),
+              double(compute.frame.counters.at("fragments")), 0.001 * chances)
+      << what;
+}
+
 }  // namespace oitlab::testing

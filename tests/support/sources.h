@@ -19,4 +19,12 @@ struct Differences {
 };
 Differences differencesOf(const Image& a, const Image& b, const CpuImage& truth, double allowed);
 
+/// Expects that frames of the two sources differ by more than `tolerance` only where fragments are
+/// in doubt, and there in less than 0.1% of the chances: a device may take a sample within 1/256
+/// pixel of an edge to the other side of it, and depths round differently. As in truth.cpp, the
+/// chances are fragments in scenes of many layers. `what` names the case.
+void expectEqualButAtEdges(const RenderFixture::Result& hardware,
+                           const RenderFixture::Result& compute, const CpuImage& truth,
+                           const std::string& what);
+
 }  // namespace oitlab::testing
