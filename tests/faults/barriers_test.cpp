@@ -57,8 +57,10 @@ struct Variant {
   Set parameters = {};
 
   int triangles() const { return method == "depth_peeling" ? 24 : 160; }
-  /// Of the image, in pixels: several bins of lucid's.
-  std::uint32_t width() const { return method == "lucid" ? 96 : 32; }
+  /// Of the image, in pixels: several bins of the compute rasterizer.
+  std::uint32_t width() const {
+    return method == "lucid" || findMethod(method).computeFirst ? 96 : 32;
+  }
   std::string text() const {
     std::string text = method;
     for (const auto& [name, value] : parameters) text += " " + name + "=" + value;
