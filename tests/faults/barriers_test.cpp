@@ -63,7 +63,7 @@ struct Variant {
   }
   std::string text() const {
     std::string text = method;
-    for (const auto& [name, value] : parameters) text += " " + name + "=" + value;
+    for (const auto& [name, value] : parameters) text += fmt::format(" {}={}", name, value);
     return text;
   }
 };
